@@ -26,7 +26,8 @@ foreach(part obs maps bayes random io opengl img config system hwdrivers topogra
 endforeach()
 
 add_library(perception_options INTERFACE)
-target_compile_options(perception_options INTERFACE -Wall -Wextra -Wconversion $<$<BOOL:${PERCEPTION_WERROR}>:-Werror>)
+target_compile_options(perception_options INTERFACE -Wall -Wextra -Wconversion $<$<BOOL:${PERCEPTION_WERROR}>:-Werror>
+                       $<$<CXX_COMPILER_ID:Clang>:-Wno-sign-conversion>)  # g++ does not count it as a conversion
 target_include_directories(perception_options INTERFACE ${CMAKE_SOURCE_DIR})
 if(PERCEPTION_SANITIZE)
   # Debian's MRPT hands out OpenGL objects that are not aligned as its headers say: no alignment check.

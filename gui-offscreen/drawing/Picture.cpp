@@ -5,7 +5,6 @@
 #include <filesystem>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
-#include <set>
 
 #include "libperception/core/Error.h"
 #include "libperception/measurement/frames/SensorFrame.h"
@@ -31,15 +30,6 @@ cv::Mat bgrOf(const Picture& picture) {
 }
 
 }  // namespace
-
-std::size_t colorsOf(const Picture& picture) {
-  std::set<std::uint32_t> colors;
-  for (std::size_t i = 0; i + 2 < picture.rgb.size(); i += 3) {
-    colors.insert(static_cast<std::uint32_t>(picture.rgb[i] << 16 | picture.rgb[i + 1] << 8 |
-                                             picture.rgb[i + 2]));
-  }
-  return colors.size();
-}
 
 void requirePictureName(const std::string& path) {
   const std::string ending = endingOf(path);

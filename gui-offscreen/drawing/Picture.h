@@ -15,9 +15,6 @@ struct Picture {
   }
 };
 
-/// Number of distinct colors; 1 = blank.
-std::size_t colorsOf(const Picture& picture);
-
 /// Throws Error (kUsage) unless the name ends with .png, .jpg or .jpeg.
 void requirePictureName(const std::string& path);
 /// Writes a PNG or JPEG, by the ending of the name, with runMark() `mark` in it. Throws as

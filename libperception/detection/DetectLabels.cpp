@@ -7,7 +7,7 @@
 #include "libperception/core/Csv.h"
 #include "libperception/core/Error.h"
 #include "libperception/core/math/Angle.h"
-#include "libperception/importers/kitti/KittiFiles.h"
+#include "libperception/importers/kitti/KittiLabels.h"
 
 namespace perception {
 namespace {

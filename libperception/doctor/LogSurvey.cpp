@@ -8,8 +8,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
-#include "libperception/doctor/MotionFit.h"
+#include "libperception/core/math/Median.h"
 #include "libperception/measurement/frames/ScanTimes.h"
 #include "libperception/sensors/observations/Conversions.h"
 
@@ -111,15 +112,6 @@ std::vector<double> steps(const std::vector<Stamp>& stamps) {
   return out;
 }
 
-/// The shortest rotation that takes a unit vector, not pointing down, to the z axis: Rodrigues'
-/// formula.
-Eigen::Matrix3d uprightRotation(const Vector3& normal) {
-  const Vector3 axis = normal.cross(Vector3::UnitZ());  // its length is the angle's sine
-  Eigen::Matrix3d cross;
-  cross << 0, -axis.z(), axis.y(), axis.z(), 0, -axis.x(), -axis.y(), axis.x(), 0;
-  return Eigen::Matrix3d::Identity() + cross + cross * cross / (1 + normal.z());
-}
-
 }  // namespace
 
 double SensorFacts::rangeBelow(double share) const { return valueAt(ranges, share); }
@@ -162,7 +154,8 @@ std::optional<GroundMounting> groundMounting(const SensorFacts& facts) {
   // Turns the plane's normal upright and lifts the plane to z = 0 at the ego origin.
   const Vector3 normal = Vector3(-a, -b, 1).normalized();
   Pose3 T_level_ego = Pose3::Identity();
-  T_level_ego.linear() = uprightRotation(normal);
+  T_level_ego.linear() =
+      Eigen::Quaterniond::FromTwoVectors(normal, Vector3::UnitZ()).toRotationMatrix();
   T_level_ego.translation() = -(T_level_ego.linear() * Vector3(0, 0, c));
   m.T_ego_sensor = T_level_ego * facts.T_ego_sensor;
   m.T_ego_sensor.translation().head<2>() = facts.T_ego_sensor.translation().head<2>();

@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "libperception/doctor/MotionCheck.h"
+#include "libperception/doctor/motion/MotionCheck.h"
 #include "libperception/lidar/ground/GroundPlane.h"
 #include "libperception/measurement/frames/LidarInputs.h"
 #include "libperception/odometry/LidarOdometry.h"

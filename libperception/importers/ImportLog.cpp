@@ -33,7 +33,9 @@ void failImage(const fs::path& path, const char* what, const std::error_code& er
 }  // namespace
 
 ImportLog::ImportLog(ImportOptions options, ImportProgress progress)
-    : options_(std::move(options)), progress_(std::move(progress)), log_(options_.output) {}
+    : options_(std::move(options)), progress_(std::move(progress)), log_(options_.output) {
+  if (options_.rate <= 0) options_.rate = kUsualRate;
+}
 
 void ImportLog::write(const mrpt::obs::CObservation& observation) {
   if (const auto stamp = toStamp(observation.timestamp)) {
@@ -81,6 +83,14 @@ void ImportLog::frame(Stamp stamp, std::int64_t number) {
 
 void ImportLog::sensor(const SensorFrame& frame) {
   if (!doubles_.isDouble(frame)) uniqueSensor(frame);
+}
+
+void ImportLog::sensor(const std::string& label, Stamp stamp, const Pose3& T_ego_sensor,
+                       decltype(SensorFrame::data) data) {
+  SensorFrame frame;
+  frame.sensor = label, frame.stamp = stamp, frame.T_ego_sensor = T_ego_sensor;
+  frame.data = std::move(data);
+  sensor(frame);
 }
 
 void ImportLog::uniqueSensor(const SensorFrame& frame) {

@@ -17,6 +17,8 @@
 
 namespace perception {
 
+/// [Hz] of frames without stamps: the rate of most lidars.
+inline constexpr double kUsualRate = 10;
 /// [Hz] rate of repeated frames: high enough that no object would move noticeably.
 inline constexpr double kRepeatRate = 200;
 /// Isolated frames are separated in time [Hz] and position [m], so that tracks of one cannot
@@ -35,7 +37,7 @@ struct ImportOptions {
     kEmbed       ///< in the log, as JPEG
   };
   std::string output;                 ///< FILE.rawlog
-  double rate = 0;                    ///< [Hz] of frames without stamps; 0: default of the format
+  double rate = 0;                    ///< [Hz] of frames without stamps; 0: kUsualRate
   std::int64_t first = 0, last = -1;  ///< frame numbers; last -1: to the end
   int repeat = 1;                     ///< number of repetitions of isolated frames
   Images images = Images::kReference;
@@ -67,7 +69,7 @@ struct ImportedImage {
   Stamp stamp;
   CameraModel camera;  ///< width and height are taken from the file
   Pose3 T_ego_camera = Pose3::Identity();
-  std::vector<double> distortion;  ///< k1 k2 p1 p2 k3; empty: rectified
+  std::vector<double> distortion = {};  ///< k1 k2 p1 p2 k3; empty: rectified
 };
 
 /// Output of an importer: log, truth and statistics. The log has its final name only after close().
@@ -86,6 +88,9 @@ class ImportLog {
   void frame(Stamp stamp, std::int64_t number);
   /// Doubled messages are left out and counted. Of clouds with timesOutsideOf() the times are.
   void sensor(const SensorFrame& frame);
+  /// The same of a frame that has no more than this. `T_ego_sensor` is the sensor's mounting.
+  void sensor(const std::string& label, Stamp stamp, const Pose3& T_ego_sensor,
+              decltype(SensorFrame::data) data);
   /// The same in two steps, for recordings of messages: a scan that comes again `within` a time [s]
   /// is a double, too.
   bool isResent(const SensorFrame& frame, double within) {

@@ -240,15 +240,6 @@ std::vector<StampedPose> readTumPoses(const std::string& path) {
   return poses;
 }
 
-Pose3 interpolate(const Pose3& a, const Pose3& b, double share) {
-  Pose3 pose = Pose3::Identity();
-  pose.translation() = (1 - share) * a.translation() + share * b.translation();
-  pose.linear() = Eigen::Quaterniond(a.linear())
-                      .slerp(share, Eigen::Quaterniond(b.linear()))
-                      .toRotationMatrix();
-  return pose;
-}
-
 std::optional<Stamp> stampOfSeconds(std::string_view text) {
   const std::size_t dot = std::min(text.find('.'), text.size());
   std::int64_t seconds = 0, fraction = 0;

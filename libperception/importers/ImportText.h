@@ -87,8 +87,6 @@ struct StampedPose {
   Pose3 pose = Pose3::Identity();
 };
 std::vector<StampedPose> readTumPoses(const std::string& path);
-/// Between two poses: linear in position, slerp in attitude.
-Pose3 interpolate(const Pose3& a, const Pose3& b, double share);
 
 /// Seconds as text, "1574859771.744660272", exact to the nanosecond. Empty if it is not such a
 /// number.

@@ -5,6 +5,8 @@
 #include <cstdio>
 #include <utility>
 
+#include "libperception/core/math/Median.h"
+
 namespace perception {
 namespace {
 
@@ -78,11 +80,9 @@ std::string ClockWatch::begin(std::deque<Offset> offsets, double change) {
 ClockLedger ClockWatch::ledger() const {
   ClockLedger ledger{state_, {}, steps_};
   if (offsets_.empty()) return ledger;
-  std::vector<double> sorted;
-  for (const Offset& offset : offsets_) sorted.push_back(offset.seconds);
-  const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
-  std::nth_element(sorted.begin(), middle, sorted.end());
-  ledger.offset = *middle;
+  std::vector<double> offsets;
+  for (const Offset& offset : offsets_) offsets.push_back(offset.seconds);
+  ledger.offset = medianOf(std::move(offsets));
   return ledger;
 }
 

@@ -71,7 +71,6 @@ class FrameAssembler {
   SensorFrame frame_;       ///< the next one, without its data
   Take take_;
   LidarCloud cloud_;
-  std::uint16_t rings_ = 0;
   std::int64_t first_clock_ = 0;  ///< [ns] the device's at the frame's first packet
   float turn_ = 0;                ///< of the packet before
   bool begun_ = false;

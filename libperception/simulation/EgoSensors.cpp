@@ -8,6 +8,7 @@
 #include <cmath>
 #include <limits>
 
+#include "libperception/core/PoseSteps.h"
 #include "libperception/sensors/ego/CEgoFilter.h"  // kGravity
 #include "libperception/sensors/observations/Conversions.h"
 #include "libperception/sensors/satellites/GnssFix.h"
@@ -39,11 +40,6 @@ Vector3 velocityOf(const EgoTruth& truth, const Vector3& point, double t) {
   Vector3 velocity = w.cross(arm);
   velocity.head<2>() += ego.velocity;
   return velocity;
-}
-
-Vector3 turnBetween(const Pose3& a, const Pose3& b) {
-  const Eigen::AngleAxisd turn(Eigen::Matrix3d(a.linear().transpose() * b.linear()));
-  return turn.angle() * turn.axis();
 }
 
 template <class Class>
@@ -137,7 +133,7 @@ std::shared_ptr<mrpt::obs::CObservation> imuObservation(const ImuUnitParams& par
   const Pose3 before = truth.at(from).T_world_ego, now = truth.at(to).T_world_ego;
   const Pose3 middle = truth.at((from + to) / 2).T_world_ego;
   // Means over the reading's time: what the unit itself integrates.
-  const Vector3 turned = turnBetween(before, now) / dt;
+  const Vector3 turned = turnOf(before.inverse() * now) / dt;
   const Vector3 pushed = (velocityOf(truth, point, to) - velocityOf(truth, point, from)) / dt;
   const Eigen::Matrix3d to_unit = (middle.linear() * mount.T_ego_sensor.linear()).transpose();
   Vector3 rates = mount.T_ego_sensor.linear().transpose() * turned;

@@ -11,6 +11,7 @@
 
 #include "libperception/sensors/frames/ToObservation.h"
 #include "libperception/sensors/observations/Conversions.h"
+#include "libperception/simulation/TruthVisibility.h"
 #include "libperception/simulation/cameras/CameraView.h"
 #include "libperception/simulation/lidar/PointTruth.h"
 #include "libperception/simulation/weather/WeatherChain.h"
@@ -20,13 +21,6 @@ namespace {
 
 // Purposes of random numbers; a sensor adds its index.
 constexpr std::uint32_t kPoseStream = 0x51B00, kSensorStream = 0x51C00, kFrameStream = 0x51E00;
-
-// KITTI's levels of occlusion from the visible share; 3 ("unknown") if almost nothing is visible.
-int occlusionLevel(double visible) {
-  if (visible >= 0.75) return 0;
-  if (visible >= 0.35) return 1;
-  return visible >= 0.05 ? 2 : 3;
-}
 
 std::int64_t ticksOf(double t) { return std::llround(t * 1e7); }
 
@@ -106,7 +100,7 @@ void Simulator::beginFrame(const Event& event) {
   endFrame();
   ++frames_;
   open_ = world_.truth(static_cast<std::int64_t>(event.count), event.t);
-  setVisibility(open_, event.t);
+  setVisibility(world_, caster_, event.t, open_);
   std::fill(scanned_.begin(), scanned_.end(), false);
 }
 
@@ -121,38 +115,6 @@ void Simulator::endFrame() {
   }
   truth_.insert(truth_.end(), open_.begin(), open_.end());
   open_.clear();
-}
-
-// Occlusion as seen from the first lidar (else the first sensor that looks around); truncation by
-// the cameras' images.
-void Simulator::setVisibility(std::vector<TruthObject>& rows, double t) {
-  caster_.setTime(t);
-  const auto& sensors = world_.scenario().sensors;
-  const Pose3 T_world_ego = world_.ego(t).T_world_ego;
-  auto looker = std::find_if(sensors.begin(), sensors.end(),
-                             [](const SensorParams& s) { return s.isLidar(); });
-  if (looker == sensors.end()) {
-    looker = std::find_if(sensors.begin(), sensors.end(),
-                          [](const SensorParams& s) { return !s.isOfEgo(); });
-  }
-  const SensorParams& eye = looker != sensors.end() ? *looker : sensors.front();
-  const Vector3 from = (T_world_ego * eye.T_ego_sensor()).translation();
-  const bool has_camera = std::any_of(sensors.begin(), sensors.end(),
-                                      [](const SensorParams& s) { return s.isCamera(); });
-  const auto see = [&](TruthObject& row) {
-    const auto object = static_cast<std::size_t>(row.id) - 1;
-    row.occluded = occlusionLevel(caster_.visibleShare(from, object));
-    row.truncated = has_camera ? 1 : 0;
-    for (const SensorParams& sensor : sensors) {
-      if (!sensor.isCamera()) continue;
-      const auto outline = imageOutline(world_, object, t, sensor.cameraModel(),
-                                        T_world_ego * sensor.T_ego_sensor() * opticalAxes());
-      if (outline) row.truncated = std::min(row.truncated, outline->truncated);
-    }
-  };
-  caster_.parallel(rows.size(), 1, [&](std::size_t first, std::size_t last) {
-    for (std::size_t i = first; i < last; ++i) see(rows[i]);
-  });
 }
 
 // The pose estimator's error: first-order Gauss-Markov, as a filter's error varies slowly.

@@ -73,7 +73,6 @@ class Simulator {
   std::shared_ptr<mrpt::obs::CObservation> feelEgo(const Event& event);
   CameraImage takeImage(const Event& event, const Pose3& T_world_camera, const RngKey& key) const;
   RadarReturns listenRadar(const Event& event, const RngKey& key);
-  void setVisibility(std::vector<TruthObject>& rows, double t);
 
   World world_;
   LidarCaster caster_;

@@ -124,12 +124,6 @@ void declareObstacles(CLI::App& cli, ObstaclesOptions& o) {
   cli.add_option("--stride", o.stride, "Every n-th of the shapes")
       ->capture_default_str()
       ->check(CLI::Range(1, 1000));
-  cli.add_option("--sector-deg", o.sector, "The lidar's view")
-      ->capture_default_str()
-      ->check(CLI::Range(40.0, 359.0));
-  cli.add_option("--lead", o.lead, "Time of driving before the stopping distance [s]")
-      ->capture_default_str()
-      ->check(CLI::Range(0.5, 20.0));
 }
 
 StudyReport obstaclesStudy(const ObstaclesOptions& options, unsigned long long seed) {

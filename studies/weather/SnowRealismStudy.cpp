@@ -7,10 +7,12 @@
 #include <limits>
 #include <map>
 #include <numeric>
+#include <utility>
 #include <variant>
 
 #include "libperception/calibration/clusters/PointLabels.h"
 #include "libperception/core/Error.h"
+#include "libperception/core/math/Median.h"
 #include "libperception/sensors/frames/FromObservation.h"
 #include "libperception/sensors/observations/registerClasses.h"
 #include "libperception/sensors/rawlog/RawlogReader.h"
@@ -145,10 +147,7 @@ double medianOf(const Halves& halves, std::size_t feature) {
   std::vector<float> values;
   for (const Rows& half : halves.of)
     for (const auto& f : half) values.push_back(f[feature]);
-  if (values.empty()) return 0;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return static_cast<double>(*middle);
+  return values.empty() ? 0 : static_cast<double>(medianOf(std::move(values)));
 }
 
 StudyTable featuresTable(const std::string& name, const Halves& real, const Halves& simulated,

@@ -15,7 +15,7 @@
 #include "libperception/importers/Importer.h"
 #include "libperception/importers/clouds/CloudTable.h"
 #include "libperception/importers/clouds/ImportClouds.h"
-#include "libperception/importers/kitti/KittiFiles.h"
+#include "libperception/importers/kitti/KittiLabels.h"
 #include "libperception/importers/kitti/KittiRawFiles.h"
 #include "libperception/importers/street_sets/AimotiveFiles.h"
 #include "libperception/importers/street_sets/NuscenesTables.h"

@@ -1,5 +1,6 @@
 #pragma once
 #include "gui-offscreen/views/Snapshot.h"
+#include "tests/gui-offscreen/PictureColors.h"
 
 namespace perception::test {
 

@@ -122,8 +122,6 @@ void EvaluateApp::declareFigures(CLI::App& cli) {
   cli.add_option("--reference", reference,
                  "run whose number of objects the others are compared with")
       ->type_name("DIR");
-  cli.add_option("--max-plots", max_plots, "truth objects with a plot of their own, for each run")
-      ->capture_default_str();
   cli.add_flag("!--no-plots", plots, "tables only");
 }
 
@@ -182,7 +180,7 @@ void EvaluateApp::run() {
   evaluateRuns();
   for (const std::string& table : dropRowsOfOtherWeathers(out_report))
     warn(fmt::format("--paper {}: no run is of that weather: its rows are left out", table));
-  const auto most = plots ? std::optional<std::size_t>(max_plots) : std::nullopt;
+  const auto most = plots ? std::optional<std::size_t>(kMostPlots) : std::nullopt;
   out_folders =
       writeEvaluations(out_report, output, most, [this](const std::string& text) { warn(text); });
   std::string text = summaryText(out_report);

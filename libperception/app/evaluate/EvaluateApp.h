@@ -27,9 +27,9 @@ class EvaluateApp : public App {
   std::vector<std::string> paper;       ///< --paper: tables of [radecki2016] to list for comparison
   EvaluationOptions params;
   double fov_deg = 180, complete_fov_deg = 360;
-  bool any_truth = false;      ///< --any-truth: also of another log, or where no scene has one
-  bool surroundings = false;   ///< --surroundings: the truth includes poles and hedges
-  std::size_t max_plots = 40;  ///< --max-plots: most truth objects with their own plot, per run
+  bool any_truth = false;     ///< --any-truth: also of another log, or where no scene has one
+  bool surroundings = false;  ///< --surroundings: the truth includes poles and hedges
+  static constexpr std::size_t kMostPlots = 40;  ///< of single truth objects, for each run
   bool nuscenes = false;       ///< --nuscenes: AMOTA and AMOTP of its tracking benchmark
   bool plots = true;           ///< --no-plots clears it
   bool without_truth = false;  ///< --without-truth: judgeQuality() in place of an evaluation

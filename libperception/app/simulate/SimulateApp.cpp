@@ -200,14 +200,11 @@ void SimulateApp::declareRecording(CLI::App& cli) {
   recording_->add_option("--seed", seed, "Seed of all random numbers")->capture_default_str();
   recording_->add_option("--threads", threads, "Number of threads; 0 = as many as the machine has")
       ->check(CLI::Range(0, 4096));
-  recording_->add_option("--gzip", gzip_level, "Gzip level of the log")
-      ->check(CLI::Range(0, 9))
-      ->capture_default_str();
 }
 
 void SimulateApp::alterRecording() {
   Config config = loadConfig();
-  RecordingTask task{inputs.front(), output, {}, seed, threads, gzip_level};
+  RecordingTask task{inputs.front(), output, {}, seed, threads};
   task.weather = config.read<SimulatedWeatherParams>("weather", {}, true);
   if (configDone(config)) return;
   std::error_code error;

@@ -4,7 +4,8 @@
 #include <cmath>
 #include <set>
 
-#include "libperception/core/Error.h"
+#include "libperception/evaluation/matching/SeenObjects.h"
+#include "libperception/evaluation/metrics/ExistenceSamples.h"
 
 namespace perception {
 namespace {
@@ -12,25 +13,6 @@ namespace {
 // Ranges of [radecki2016]'s camera (method.md 11; table on camera resolution of [radecki2016], 2k
 // images) [m].
 constexpr double kCameraCarRange = 15, kCameraPersonRange = 10;
-
-// [m] Rounding of a point of the rectangle itself.
-constexpr double kOnFootprint = 1e-6;
-
-// A truth object at a scene, with its position relative to the ego.
-struct SeenTruth {
-  const TruthObject* object;
-  ClassId class_id;
-  Footprint footprint;
-  GroundView view;
-  TruthUse use;
-};
-
-// The same for an estimate.
-struct SeenEstimate {
-  const SceneObject* object;
-  Footprint footprint;
-  GroundView view;
-};
 
 std::string sensorSet(const TrackedRun& run) {
   std::set<char> letters;
@@ -40,20 +22,6 @@ std::string sensorSet(const TrackedRun& run) {
     }
   }
   return {letters.begin(), letters.end()};
-}
-
-template <class Seen>  // SeenTruth or SeenEstimate
-std::vector<Vector2> centers(const std::vector<Seen>& seen) {
-  std::vector<Vector2> result;
-  for (const Seen& s : seen) result.push_back(s.footprint.center);
-  return result;
-}
-
-// Near an object of the truth: within `exclusion` of its center or on its footprint (a tram is
-// longer than that).
-bool isNear(const SeenTruth& truth, const Vector2& point, double exclusion) {
-  return (truth.footprint.center - point).norm() <= exclusion ||
-         (closestPoint(truth.footprint, point) - point).norm() <= kOnFootprint;
 }
 
 Match makeMatch(const SeenTruth& truth, const SeenEstimate& estimate) {
@@ -90,7 +58,7 @@ class Evaluator {
 
   void add(const TruthAtScene& instant) {
     const Scene& scene = run_.scenes[instant.scene];
-    std::vector<SeenEstimate> estimates = see(scene);
+    std::vector<SeenEstimate> estimates = seenEstimates(scene);
     std::vector<SeenTruth> counted, others;
     for (const TruthObject& object : instant.objects) {
       SeenTruth seen = see(object, scene);
@@ -101,16 +69,18 @@ class Evaluator {
     figures.frame = scene.frame;
     figures.t = scene.stamp - run_.first_stamp;
     figures.truth = counted.size();
-    for (const ExistenceSample& sample : realness(estimates, counted, others))
+    std::vector<SeenTruth> truth = counted;
+    truth.insert(truth.end(), others.begin(), others.end());
+    for (const ExistenceSample& sample : realness(estimates, truth))
       result_.existence.push_back(sample);
     estimates.erase(std::remove_if(estimates.begin(), estimates.end(),
                                    [&](const SeenEstimate& e) {
                                      return e.object->existence < options_.min_existence;
                                    }),
                     estimates.end());
-    for (const ExistenceSample& sample : realness(estimates, counted, others))
+    for (const ExistenceSample& sample : realness(estimates, truth))
       figures.not_real += !sample.real;
-    countOutputs(estimates, counted, others, figures);
+    countOutputs(estimates, truth, figures);
     setDistances(estimates, counted, others, figures);
     addSamples(estimates, counted, figures.t);
     result_.instants.push_back(std::move(figures));
@@ -120,24 +90,9 @@ class Evaluator {
 
  private:
   SeenTruth see(const TruthObject& object, const Scene& scene) const {
-    SeenTruth seen{&object,
-                   classOfTruth(object.type, run_.class_names),
-                   makeFootprint(object.position, object.yaw, object.length, object.width),
-                   {},
-                   {}};
-    seen.view = viewFrom(scene.ego.T_world_ego, seen.footprint);
-    seen.use = useOf(object, seen.view, seen.class_id, options_.selection);
+    SeenTruth seen = seenTruth(object, scene.ego.T_world_ego, run_.class_names, options_.selection);
     // Truth objects of unnamed classes do not count, as outputs of these.
     if (seen.use == TruthUse::kCounts && !isNamed(seen.class_id)) seen.use = TruthUse::kNoClass;
-    return seen;
-  }
-
-  std::vector<SeenEstimate> see(const Scene& scene) const {
-    std::vector<SeenEstimate> seen;
-    for (const SceneObject& o : scene.objects) {
-      const Footprint footprint = makeFootprint(o.position, o.yaw, o.length, o.width);
-      seen.push_back({&o, footprint, viewFrom(scene.ego.T_world_ego, footprint)});
-    }
     return seen;
   }
 
@@ -154,13 +109,12 @@ class Evaluator {
     });
   }
 
-  void countOutputs(const std::vector<SeenEstimate>& estimates,
-                    const std::vector<SeenTruth>& counted, const std::vector<SeenTruth>& others,
+  void countOutputs(const std::vector<SeenEstimate>& estimates, const std::vector<SeenTruth>& truth,
                     InstantFigures& figures) const {
     figures.outputs.resize(result_.class_names.size());
     for (const SeenEstimate& e : estimates) {
       if (!isNamedInSector(e)) continue;
-      const bool is_false = !anyNear(counted, e) && !anyNear(others, e);
+      const bool is_false = !anyNear(truth, e);
       OutputCounts& counts = figures.outputs[static_cast<std::size_t>(e.object->class_id)];
       ++counts.named;
       if (is_false) {
@@ -173,39 +127,13 @@ class Evaluator {
     }
   }
 
-  // Real: matched to a truth object of any type. Not real: no truth object near, or only ones
-  // matched to other outputs. Unmatched outputs near an unmatched truth object are ambiguous and
-  // left out.
   std::vector<ExistenceSample> realness(const std::vector<SeenEstimate>& estimates,
-                                        const std::vector<SeenTruth>& counted,
-                                        const std::vector<SeenTruth>& others) const {
-    std::vector<ExistenceSample> samples;
-    std::vector<SeenTruth> truth = counted;
-    truth.insert(truth.end(), others.begin(), others.end());
+                                        const std::vector<SeenTruth>& truth) const {
     std::vector<SeenEstimate> named;
     for (const SeenEstimate& e : estimates) {
       if (isNamedInSector(e)) named.push_back(e);
     }
-    std::vector<bool> real(named.size(), false), served(truth.size(), false);
-    const auto pairs =
-        match(centers(truth), centers(named), options_.tolerance, Pairing::kOneToOne);
-    for (std::size_t t = 0; t < pairs.size(); ++t) {
-      if (pairs[t] < 0) continue;
-      real[static_cast<std::size_t>(pairs[t])] = true;
-      served[t] = true;
-    }
-    for (std::size_t i = 0; i < named.size(); ++i) {
-      bool unclear = false;
-      for (std::size_t t = 0; t < truth.size() && !real[i]; ++t) {
-        const Vector2& center = named[i].footprint.center;
-        const bool twice = served[t] && isNear(truth[t], center, options_.tolerance);
-        unclear = unclear || (isNear(truth[t], center, options_.exclusion) && !twice);
-      }
-      if (unclear) continue;
-      samples.push_back(
-          {result_.instants.size(), named[i].object->existence, static_cast<bool>(real[i])});
-    }
-    return samples;
+    return existenceSamples(named, truth, options_, result_.instants.size());
   }
 
   // The truth set is the counted one. Its estimates: of named classes, those that pair with it

@@ -4,6 +4,7 @@
 #include <map>
 #include <utility>
 
+#include "libperception/core/math/Median.h"
 #include "libperception/evaluation/plots/Gnuplot.h"
 #include "libperception/evaluation/plots/RunPlots.h"
 
@@ -38,10 +39,7 @@ double typicalStep(const std::vector<InstantFigures>& instants) {
   std::vector<double> steps;
   for (std::size_t i = 1; i < instants.size(); ++i)
     steps.push_back(instants[i].t - instants[i - 1].t);
-  if (steps.empty()) return 0.1;
-  std::nth_element(steps.begin(), steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2),
-                   steps.end());
-  return std::max(steps[steps.size() / 2], 1e-3);
+  return steps.empty() ? 0.1 : std::max(medianOf(std::move(steps)), 1e-3);
 }
 
 // Joins consecutive instants of one row and state to intervals.

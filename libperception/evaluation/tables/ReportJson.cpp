@@ -1,5 +1,6 @@
 #include <nlohmann/json.hpp>
 
+#include "libperception/evaluation/front_ends/FrontEndJson.h"
 #include "libperception/evaluation/tables/Report.h"
 #include "libperception/scene/files/RunMark.h"
 
@@ -103,49 +104,6 @@ Json json(const Reliability& reliability) {
                     {"correct", json(bin.correct)}});
   }
   return {{"calibration_error", json(reliability.calibration_error)}, {"bins", bins}};
-}
-
-Json json(const RecallCounts& r) {
-  return {{"in_view", r.in_view},
-          {"found", r.found},
-          {"named", r.named},
-          {"named_by_papers_labels", r.named_primary},
-          {"measurements", r.measurements}};
-}
-
-Json json(const PrecisionCounts& p) {
-  Json on = Json::object();
-  for (const auto& [kind, count] : p.on) on[kind] = count;
-  return {{"measurements", p.measurements},
-          {"right_class", p.right_class},
-          {"right_size", p.right_size},
-          {"on", on}};
-}
-
-template <class Counts>
-Json binsJson(const std::vector<Counts>& bins) {
-  Json rows = Json::array();
-  for (const Counts& bin : bins) rows.push_back(json(bin));
-  return rows;
-}
-
-Json json(const FrontEndEvaluation& f) {
-  Json visible = Json::object(), with_points = Json::object(), labels = Json::object();
-  for (std::size_t c = 0; c < f.class_names.size(); ++c) {
-    visible[f.class_names[c]] = binsJson(f.visible[c]);
-    with_points[f.class_names[c]] = binsJson(f.with_points[c]);
-  }
-  for (const auto& [label, bins] : f.labels) labels[label] = binsJson(bins);
-  return {{"name", f.name},
-          {"sensors", f.sensors},
-          {"scans", f.scans},
-          {"scans_without_truth", f.scans_without_truth},
-          {"measurements", f.measurements},
-          {"surroundings_known", f.surroundings},
-          {"range_edges_m", f.range_edges},
-          {"visible", visible},
-          {"with_points", with_points},
-          {"labels", labels}};
 }
 
 /// As runMark() does, so that whoever looks for marks finds it.
@@ -296,7 +254,7 @@ std::string jsonReport(const EvaluationReport& report) {
     }
     if (!run.front_ends.empty()) {
       Json& front_ends = entry["front_ends"] = Json::array();
-      for (const FrontEndEvaluation& f : run.front_ends) front_ends.push_back(json(f));
+      for (const FrontEndEvaluation& f : run.front_ends) front_ends.push_back(frontEndJson(f));
     }
     if (run.trials.empty()) {
       entry["instants"] = instantsJson(e);

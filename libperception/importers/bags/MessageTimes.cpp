@@ -8,6 +8,8 @@
 #include <set>
 #include <utility>
 
+#include "libperception/core/math/Median.h"
+
 namespace perception {
 namespace {
 
@@ -22,19 +24,13 @@ constexpr double kResent = 0.02;           // [s]
 constexpr double kMostInARow = 0.1;        // [-] of close messages, behind another close one
 constexpr double kSlowestTurn = 0.25;      // [s] of a lidar: 5 Hz, and some slack
 
-double medianIn(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
 /// [s] Median of the steps ahead; 0 without.
 double periodOf(const std::vector<Stamp>& stamps) {
   std::vector<double> steps;
   for (std::size_t i = 1; i < stamps.size(); ++i) {
     if (stamps[i] > stamps[i - 1]) steps.push_back(stamps[i] - stamps[i - 1]);
   }
-  return steps.empty() ? 0 : medianIn(std::move(steps));
+  return steps.empty() ? 0 : medianOf(std::move(steps));
 }
 
 /// How many stamps from `at` on jump ahead, and come back to where the time went on.
@@ -113,7 +109,7 @@ double resentWithin(std::vector<Stamp> stamps) {
     in_a_row += i > 1 && stamps[i - 1] - stamps[i - 2] <= kResent;
   }
   const bool alone = static_cast<double>(in_a_row) <= kMostInARow * static_cast<double>(close);
-  const bool turns = others.empty() || medianIn(std::move(others)) <= kSlowestTurn;
+  const bool turns = others.empty() || medianOf(std::move(others)) <= kSlowestTurn;
   return alone && turns ? kResent : 0;
 }
 
@@ -141,7 +137,7 @@ MessageClock clockOf(const std::vector<MessageTimes>& times) {
   }
   clock.farthest = selection.farthest();
   const auto [least, most] = std::minmax_element(leads.begin(), leads.end());
-  if (*most - *least <= kSteadyLead) clock.lead = medianIn(std::move(leads));
+  if (*most - *least <= kSteadyLead) clock.lead = medianOf(std::move(leads));
   return clock;
 }
 

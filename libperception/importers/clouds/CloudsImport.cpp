@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "libperception/core/Error.h"
+#include "libperception/core/PoseSteps.h"
 #include "libperception/importers/ImportText.h"
 #include "libperception/importers/Importer.h"
 #include "libperception/importers/clouds/CloudFolder.h"
@@ -20,9 +21,6 @@ constexpr double kPoseReach = 0.2;
 class CloudsImporter final : public Importer {
  public:
   void declare(CLI::App& cli) override;
-  void prepare(ImportOptions& options) override {
-    if (options.rate <= 0) options.rate = 10;
-  }
   void run(ImportLog& log) override;
 
  private:
@@ -223,12 +221,7 @@ void CloudsImporter::run(ImportLog& log) {
       log.missing("pose", poses_file_, files[i].number);
     }
     log.frame(stamps_[i], files[i].number);
-    SensorFrame scan;
-    scan.sensor = label_;
-    scan.stamp = stamps_[i];
-    scan.T_ego_sensor = T_ego_lidar;
-    scan.data = readCloudFile(files[i].path, format_);
-    log.sensor(scan);
+    log.sensor(label_, stamps_[i], T_ego_lidar, readCloudFile(files[i].path, format_));
     log.progress(static_cast<std::int64_t>(i + 1), static_cast<std::int64_t>(files.size()));
   }
 }

@@ -50,9 +50,12 @@ ObjectDetection detectionOf(const WorldBox& box, const Pose3& T_velo_poses) {
   return object;
 }
 
-}  // namespace
+/// Rows of one file that are wanted.
+struct Wanted {
+  std::string name, class_name, file;
+};
 
-KittiImportParams::Detections kittiDetectionsOf(const std::string& text) {
+Wanted wantedOf(const std::string& text) {
   const auto colon = text.find(':');
   const auto equals = text.find('=', colon == std::string::npos ? 0 : colon);
   if (colon == std::string::npos || equals == std::string::npos || colon == 0 ||
@@ -63,7 +66,10 @@ KittiImportParams::Detections kittiDetectionsOf(const std::string& text) {
           text.substr(equals + 1)};
 }
 
-void KittiDetections::add(const KittiImportParams::Detections& wanted) {
+}  // namespace
+
+void KittiDetections::add(const std::string& text) {
+  const Wanted wanted = wantedOf(text);
   const KittiDetectionLayout& layout = layoutOf(wanted.name);
   auto detector = std::find_if(detectors_.begin(), detectors_.end(),
                                [&](const Detector& d) { return d.name == wanted.name; });
@@ -116,12 +122,8 @@ void KittiDetections::write(std::int64_t frame, Stamp stamp, const KittiCalibrat
       for (const WorldBox& box : placed->second)
         found.objects.push_back(detectionOf(box, T_poses_velo.inverse()));
     }
-    SensorFrame out;
-    out.sensor = detector.name;
-    out.stamp = stamp;
-    out.T_ego_sensor = detector.layout.space_boxes ? T_ego_velo : T_ego_camera;
-    out.data = std::move(found);
-    log.sensor(out);
+    log.sensor(detector.name, stamp, detector.layout.space_boxes ? T_ego_velo : T_ego_camera,
+               std::move(found));
   }
 }
 

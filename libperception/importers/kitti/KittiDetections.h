@@ -5,22 +5,19 @@
 #include <vector>
 
 #include "libperception/importers/ImportLog.h"
-#include "libperception/importers/kitti/KittiFiles.h"
-#include "libperception/importers/kitti/KittiImport.h"
+#include "libperception/importers/kitti/KittiLabels.h"
 #include "libperception/importers/street_sets/NuscenesBoxes.h"
 
 namespace perception {
 
-/// Parses NAME:CLASS=FILE of the command line. Throws Error (kUsage).
-KittiImportParams::Detections kittiDetectionsOf(const std::string& text);
-
 /// The boxes of all detectors of a sequence, by frame.
 class KittiDetections {
  public:
-  /// Reads a file; files of the same name are one detector. Throws Error (kUsage) for a name
-  /// without a known layout, DataError. A file of boxes3d may also be nuScenes' JSON, whose boxes
-  /// are in the frame of the file of poses.
-  void add(const KittiImportParams::Detections& wanted);
+  /// Reads a file. `text`: NAME:CLASS=FILE; NAME is the detector's and becomes the sensor label,
+  /// CLASS is the type of the rows that are read, or all. Files of the same name are one detector.
+  /// Throws Error (kUsage) for other text and for a name without a known layout, DataError. A file
+  /// of boxes3d may also be nuScenes' JSON, whose boxes are in the frame of the file of poses.
+  void add(const std::string& text);
   /// Boxes that need the vehicle's pose.
   bool needPoses() const;
   /// Writes one observation per detector, also without objects: an empty list is information.

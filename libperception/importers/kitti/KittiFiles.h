@@ -18,24 +18,8 @@ struct KittiCalibration {
   CameraModel camera;                     ///< of cam2
 };
 
-/// A 3D box as KITTI writes it, in cam0; all NaN for an image area (DontCare).
-struct KittiBox {
-  double height = 0, width = 0, length = 0;  ///< [m]
-  Vector3 bottom_center = Vector3::Zero();   ///< [m] cam0
-  double rotation_y = 0;  ///< [rad] about the camera's y axis; 0 = length axis along x
-};
-
-/// One line of a tracking label file.
-struct KittiLabel {
-  std::int64_t frame = 0, id = -1;
-  std::string type;
-  double truncated = 0;
-  int occluded = 0;
-  double alpha = 0;  ///< [rad] observation angle
-  ObjectDetection::ImageBox image_box;
-  std::optional<KittiBox> box;
-  double score = 1;  ///< if from a detector
-};
+/// [m] Height of the Velodyne on KITTI's car (Geiger et al., IJRR 2013, figure 3).
+inline constexpr double kKittiVelodyneHeight = 1.73;
 
 // All readers throw DataError: kNoInput when the file is missing, else with file, line and what was
 // expected.
@@ -46,6 +30,12 @@ bool setKittiCamera(const Eigen::Matrix<double, 3, 4>& P2, KittiCalibration& cal
 
 KittiCalibration readKittiCalibration(const std::string& path);
 
+/// Pose of the Velodyne above the ground for single frames without poses. The cameras are taken as
+/// level (KITTI's page on the sensor setup), so that image boxes agree with the ground plane; the
+/// Velodyne is pitched down by half a degree (in its scans the road rises by .7 to 1.2 % ahead, in
+/// labels in the camera frame by .1 %).
+Pose3 levelVelodyne(const KittiCalibration& calibration);
+
 /// Poses in the frame of the first line, one line a frame: 12 numbers row-major (kitti), or t x y z
 /// qx qy qz qw (tum; t is not used: line k is frame k).
 std::vector<Pose3> readKittiPoses(const std::string& path, const std::string& format);
@@ -55,34 +45,7 @@ std::vector<Pose3> readKittiOxts(const std::string& path);
 /// The same of files with a line each, as in the raw data.
 std::vector<Pose3> readKittiOxts(const std::vector<std::string>& paths);
 
-/// Truth, or detections in the same layout (last column score, column of ids optional).
-std::vector<KittiLabel> readKittiLabels(const std::string& path);
-
-/// Truth of one frame in the layout of the object benchmark: without frame and id columns (ids are
-/// line numbers).
-std::vector<KittiLabel> readKittiObjectLabels(const std::string& path, std::int64_t frame);
-
-/// Detections of one file, by frame. Rows whose type is not `class_name` are skipped unless
-/// `class_name` is "all". Layouts: see kittiDetectionLayouts().
-std::vector<KittiLabel> readKittiDetections(const std::string& path, const std::string& layout,
-                                            const std::string& class_name);
-
-/// File layout of a detector.
-struct KittiDetectionLayout {
-  const char* name;
-  bool space_boxes;  ///< 3D boxes (modality L), otherwise image boxes (modality C)
-  bool has_alpha;    ///< the observation angle is valid
-};
-const std::vector<KittiDetectionLayout>& kittiDetectionLayouts();
-
 /// One Velodyne scan, .bin or .bin.gz: little-endian float32 x, y, z, intensity [m, 0 to 1].
 LidarCloud readKittiScan(const std::string& path);
-
-/// The box in the Velodyne frame: bottom center and heading of the length axis.
-ObjectDetection::SpaceBox boxInVelodyne(const KittiBox& box, const KittiCalibration& calibration);
-
-/// Number of returns (Velodyne frame) inside the box.
-int returnsInside(const KittiBox& box, const LidarCloud& cloud,
-                  const KittiCalibration& calibration);
 
 }  // namespace perception

@@ -1,11 +1,10 @@
-#include "libperception/importers/kitti/KittiImport.h"
-
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <map>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -16,6 +15,7 @@
 #include "libperception/importers/SensorLabels.h"
 #include "libperception/importers/kitti/KittiDetections.h"
 #include "libperception/importers/kitti/KittiFiles.h"
+#include "libperception/importers/kitti/KittiLabels.h"
 
 namespace perception {
 
@@ -25,6 +25,19 @@ namespace {
 
 const std::vector<std::string> kScanEndings = {".bin", ".bin.gz"};
 const std::vector<std::string> kImageEndings = {".png", ".jpg", ".jpeg"};
+
+/// Inputs of a KITTI tracking sequence.
+struct KittiImportParams {
+  std::string calibration;               ///< calibration file
+  std::string poses;                     ///< ego motion, one line per frame ...
+  std::string poses_frame = "velodyne";  ///< ... of velodyne, camera or imu
+  std::string poses_format = "kitti";    ///< ... kitti or tum
+  std::string oxts;                      ///< instead of poses
+  std::string lidar_dir, images_dir;     ///< empty: none
+  std::string labels;                    ///< truth; empty: none
+  std::vector<std::string> detections;   ///< NAME:CLASS=FILE
+};
+
 /// The whole import of one sequence.
 class Import {
  public:
@@ -166,14 +179,7 @@ void Import::writeFrame(std::int64_t frame) {
   if (hasPoses()) log_.ego(stamp, egoAt(frame));
   log_.frame(stamp, frame);
   const std::optional<LidarCloud> cloud = readScan(frame);
-  if (cloud) {
-    SensorFrame scan;
-    scan.sensor = kLidarTop;
-    scan.stamp = stamp;
-    scan.T_ego_sensor = T_ego_velo_;
-    scan.data = *cloud;
-    log_.sensor(scan);
-  }
+  if (cloud) log_.sensor(kLidarTop, stamp, T_ego_velo_, *cloud);
   detections_.write(frame, stamp, calibration_, T_ego_velo_, posesVelodyneAt(frame), log_);
   if (!params_.images_dir.empty()) writeImage(frame);
   if (!params_.labels.empty()) addTruth(frame, cloud);
@@ -182,13 +188,9 @@ void Import::writeFrame(std::int64_t frame) {
 void Import::writeImage(std::int64_t frame) {
   const std::string path = fileOfFrame(params_.images_dir, frame, kImageEndings);
   if (path.empty()) return log_.missing("image", params_.images_dir, frame);
-  ImportedImage image;
-  image.label = kCameraLeft;
-  image.path = path;
-  image.stamp = stampOf(frame);
-  image.T_ego_camera = T_ego_velo_ * calibration_.T_cam0_velo.inverse() * calibration_.T_cam0_cam2;
-  image.camera = calibration_.camera;
-  log_.image(image, frame);
+  const Pose3 T_ego_camera =
+      T_ego_velo_ * calibration_.T_cam0_velo.inverse() * calibration_.T_cam0_cam2;
+  log_.image({kCameraLeft, path, stampOf(frame), calibration_.camera, T_ego_camera}, frame);
 }
 
 void Import::addTruth(std::int64_t frame, const std::optional<LidarCloud>& cloud) {
@@ -215,15 +217,10 @@ class KittiImporter final : public Importer {
  public:
   void declare(CLI::App& cli) override;
   void prepare(ImportOptions& options) override;
-  void run(ImportLog& log) override {
-    for (const std::string& text : detections_)
-      params_.detections.push_back(kittiDetectionsOf(text));
-    Import(params_, log).run();
-  }
+  void run(ImportLog& log) override { Import(params_, log).run(); }
 
  private:
   KittiImportParams params_;
-  std::vector<std::string> detections_;  ///< NAME:CLASS=FILE
 };
 
 void KittiImporter::declare(CLI::App& cli) {
@@ -246,7 +243,7 @@ void KittiImporter::declare(CLI::App& cli) {
                  "folder of left color images, FRAME.png or FRAME.jpg; copied beside the log "
                  "unless --embed-images");
   cli.add_option(
-      "--detections", detections_,
+      "--detections", p.detections,
       "NAME:CLASS=FILE, repeatable; NAME: boxes3d (AB3DMOT's or KITTI's columns, nuScenes' JSON), "
       "pointrcnn, "
       "pointgnn, rrc, dpm, kitti3d, kitti2d (or one of them and -anything); CLASS: rows of this "
@@ -256,52 +253,10 @@ void KittiImporter::declare(CLI::App& cli) {
 void KittiImporter::prepare(ImportOptions& options) {
   if (options.images == ImportOptions::Images::kReference)
     options.images = ImportOptions::Images::kCopy;
-  if (options.rate <= 0) options.rate = 10;
 }
 
 }  // namespace
 
-Pose3 levelVelodyne(const KittiCalibration& calibration) {
-  const Vector3 up = -calibration.T_cam0_velo.linear().row(1).transpose();  // in the Velodyne frame
-  const Vector3 left = up.cross(Vector3::UnitX()).normalized();
-  Pose3 T_ego_velo = Pose3::Identity();
-  T_ego_velo.linear() << left.cross(up).transpose(), left.transpose(), up.transpose();
-  T_ego_velo.translation().z() = kKittiVelodyneHeight;
-  return T_ego_velo;
-}
-
-TruthObject truthOf(const KittiLabel& label, const KittiCalibration& calibration,
-                    const Pose3& T_world_velo, const std::optional<LidarCloud>& cloud) {
-  TruthObject o;
-  o.frame = label.frame;
-  o.id = label.id;
-  o.type = label.type;
-  // Tracking labels grade truncation 0, 1, 2 (none, partly, wholly); the object benchmark gives
-  // the share itself.
-  o.truncated = std::max(0.0, label.truncated > 1 ? label.truncated / 2 : label.truncated);
-  o.occluded = std::max(0, label.occluded);
-  o.ignore = !coveredType(label.type) || !label.box;
-  if (!label.box) {  // an area of the image
-    constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
-    o.position.setConstant(kUnknown);
-    o.yaw = o.length = o.width = o.height = kUnknown;
-    const ObjectDetection::ImageBox& b = label.image_box;
-    o.area = ImageArea{b.x1, b.y1, b.x2, b.y2};
-    return o;
-  }
-  placeTruth(boxInVelodyne(*label.box, calibration), T_world_velo, o);
-  if (cloud) o.lidar_points = returnsInside(*label.box, *cloud, calibration);
-  return o;
-}
-
 std::unique_ptr<Importer> makeKittiImporter() { return std::make_unique<KittiImporter>(); }
-
-ImportResult importKitti(const KittiImportParams& params, ImportOptions options,
-                         const ImportProgress& progress) {
-  if (options.rate <= 0) options.rate = 10;
-  ImportLog log(std::move(options), progress);
-  Import(params, log).run();
-  return log.close();
-}
 
 }  // namespace perception

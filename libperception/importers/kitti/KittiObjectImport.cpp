@@ -8,7 +8,7 @@
 #include "libperception/importers/ImportText.h"
 #include "libperception/importers/Importer.h"
 #include "libperception/importers/SensorLabels.h"
-#include "libperception/importers/kitti/KittiImport.h"
+#include "libperception/importers/kitti/KittiLabels.h"
 
 namespace perception {
 
@@ -108,14 +108,7 @@ void KittiObjectImporter::write(const Frame& frame, Stamp stamp, bool last, Impo
       T_ego_velo * calibration.T_cam0_velo.inverse() * calibration.T_cam0_cam2;
   log.ego(stamp, frame.T_world_ego);
   if (last) log.frame(stamp, frame.file.number);
-  SensorFrame out;
-  out.stamp = stamp;
-  if (frame.cloud) {
-    out.sensor = kLidarTop;
-    out.T_ego_sensor = T_ego_velo;
-    out.data = *frame.cloud;
-    log.sensor(out);
-  }
+  if (frame.cloud) log.sensor(kLidarTop, stamp, T_ego_velo, *frame.cloud);
   if (label_boxes_) {
     ObjectDetections found;
     found.camera = calibration.camera;
@@ -127,21 +120,12 @@ void KittiObjectImporter::write(const Frame& frame, Stamp stamp, bool last, Impo
       object.image_box = label.image_box;
       object.heading = wrapAngle(label.alpha);
     }
-    out.sensor = kBoxesLabel;
-    out.T_ego_sensor = T_ego_camera;
-    out.data = std::move(found);
-    log.sensor(out);
+    log.sensor(kBoxesLabel, stamp, T_ego_camera, std::move(found));
   }
   if (!last) return;  // frame number, image and truth are at the last repetition
-  if (!frame.image.empty()) {
-    ImportedImage image;
-    image.label = kCameraLeft;
-    image.path = frame.image;
-    image.stamp = stamp;
-    image.camera = calibration.camera;
-    image.T_ego_camera = T_ego_camera;
-    log.image(image, frame.file.number);
-  }
+  if (!frame.image.empty())
+    log.image({kCameraLeft, frame.image, stamp, calibration.camera, T_ego_camera},
+              frame.file.number);
   for (const KittiLabel& label : frame.labels)
     log.truth(stamp, truthOf(label, calibration, frame.T_world_ego * T_ego_velo, frame.cloud));
 }

@@ -3,12 +3,12 @@
 #include <CLI/CLI.hpp>
 #include <filesystem>
 #include <optional>
+#include <utility>
 
 #include "libperception/core/Error.h"
 #include "libperception/importers/ImportText.h"
 #include "libperception/importers/Importer.h"
 #include "libperception/importers/SensorLabels.h"
-#include "libperception/importers/kitti/KittiImport.h"
 #include "libperception/importers/kitti/KittiRawFiles.h"
 #include "libperception/importers/positions/ImportClock.h"
 
@@ -88,13 +88,9 @@ void KittiRawImporter::addScans(ImportLog& log) {
     if (!log.wants(file.number)) continue;
     log.at(scans.stamps[i], [this, &log, file, stamp = scans.stamps[i]] {
       log.frame(stamp, file.number);
-      SensorFrame scan;
-      scan.sensor = kLidarTop;
-      scan.stamp = stamp;
-      scan.T_ego_sensor = T_ego_velo_;
-      scan.data = readKittiScan(file.path);
-      addTracklets(file.number, stamp, std::get<LidarCloud>(scan.data), log);
-      log.sensor(scan);
+      LidarCloud cloud = readKittiScan(file.path);
+      addTracklets(file.number, stamp, cloud, log);
+      log.sensor(kLidarTop, stamp, T_ego_velo_, std::move(cloud));
     });
   }
 }
@@ -105,13 +101,9 @@ void KittiRawImporter::addImages(ImportLog& log) {
   for (std::size_t i = 0; i < images.files.size(); ++i) {
     const FrameFile file = images.files[i];
     if (!log.options().wants(file.number)) continue;
-    ImportedImage image;
-    image.label = kCameraLeft;
-    image.path = file.path;
-    image.stamp = images.stamps[i];
-    image.T_ego_camera =
-        T_ego_velo_ * calibration_.T_cam0_velo.inverse() * calibration_.T_cam0_cam2;
-    image.camera = calibration_.camera;
+    const ImportedImage image{
+        kCameraLeft, file.path, images.stamps[i], calibration_.camera,
+        T_ego_velo_ * calibration_.T_cam0_velo.inverse() * calibration_.T_cam0_cam2};
     log.at(image.stamp, [&log, image, number = file.number] { log.image(image, number); });
   }
 }

@@ -10,7 +10,7 @@
 #include "libperception/importers/ImportText.h"
 #include "libperception/importers/Importer.h"
 #include "libperception/importers/SensorLabels.h"
-#include "libperception/importers/kitti/KittiImport.h"
+#include "libperception/importers/kitti/KittiFiles.h"
 #include "libperception/importers/truth/InstanceBoxes.h"
 #include "libperception/importers/truth/PointLabelFiles.h"
 
@@ -49,9 +49,6 @@ class SemanticKittiImporter final : public Importer {
                    "sequences/NN: velodyne/, poses.txt, calib.txt, and where there are labels/, "
                    "times.txt")
         ->required();
-  }
-  void prepare(ImportOptions& options) override {
-    if (options.rate <= 0) options.rate = 10;
   }
   void run(ImportLog& log) override;
 
@@ -125,14 +122,9 @@ void SemanticKittiImporter::run(ImportLog& log) {
         T_ego_cam0 * poses.front().inverse() * poses[k] * T_ego_cam0.inverse();
     log.ego(stamp, T_world_ego);
     log.frame(stamp, file.number);
-    SensorFrame scan;
-    scan.sensor = kLidarTop;
-    scan.stamp = stamp;
-    scan.T_ego_sensor = T_ego_lidar;
     LidarCloud cloud = readKittiScan(file.path);
     if (labeled) addLabels(file, stamp, T_world_ego * T_ego_lidar, cloud, log);
-    scan.data = std::move(cloud);
-    log.sensor(scan);
+    log.sensor(kLidarTop, stamp, T_ego_lidar, std::move(cloud));
     log.progress(static_cast<std::int64_t>(&file - files.data()) + 1,
                  static_cast<std::int64_t>(files.size()));
   }

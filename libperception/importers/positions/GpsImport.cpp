@@ -79,11 +79,7 @@ void TrackImporter::run(ImportLog& log) {
       object.score = 1;
       object.space_box = ObjectDetection::SpaceBox{poses[i].pose.translation(), 0, kGpsPointSize,
                                                    kGpsPointSize, kGpsPointSize};
-      SensorFrame out;
-      out.sensor = kObjectLabel;
-      out.stamp = stamp;
-      out.data = std::move(found);
-      log.sensor(out);
+      log.sensor(kObjectLabel, stamp, Pose3::Identity(), std::move(found));
     } else {
       log.observation(*gpsObservation(fixes[i]));
     }

@@ -3,6 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <utility>
+
+#include "libperception/core/PoseSteps.h"
+#include "libperception/core/math/Median.h"
 
 namespace perception {
 namespace {
@@ -26,10 +30,7 @@ double medianPeriod(const std::vector<GpsFix>& fixes) {
     const double step = fixes[i].stamp - fixes[i - 1].stamp;
     if (step > 0) steps.push_back(step);
   }
-  if (steps.empty()) return 0;
-  const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
-  std::nth_element(steps.begin(), middle, steps.end());
-  return *middle;
+  return steps.empty() ? 0 : medianOf(std::move(steps));
 }
 
 /// Cells of the ground plane that hold a return, all scans placed by the poses moved by `shift`.

@@ -7,6 +7,7 @@
 
 #include "libperception/core/Csv.h"
 #include "libperception/core/Error.h"
+#include "libperception/core/PoseSteps.h"
 #include "libperception/importers/ImportText.h"
 #include "libperception/importers/truth/TruthTypes.h"
 

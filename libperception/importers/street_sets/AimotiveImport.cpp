@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <utility>
 
 #include "libperception/core/Error.h"
 #include "libperception/importers/ImportText.h"
@@ -74,12 +75,9 @@ void AimotiveImporter::queueRadar(const char* file, const char* label, const Pos
                                   ImportLog& log) const {
   for (AimotiveRadarScan& scan : readAimotiveRadar(path(file))) {
     if (!inside(scan.t)) continue;
-    SensorFrame out;
-    out.sensor = label;
-    out.stamp = stampOf(scan.t);
-    out.T_ego_sensor = T_body_radar;
-    out.data = std::move(scan.returns);
-    log.at(out.stamp, [out, &log] { log.sensor(out); });
+    log.at(stampOf(scan.t), [=, &log, returns = std::move(scan.returns), stamp = stampOf(scan.t)] {
+      log.sensor(label, stamp, T_body_radar, returns);
+    });
   }
 }
 
@@ -88,13 +86,12 @@ void AimotiveImporter::queueImages(ImportLog& log) const {
   if (!fs::exists(dir)) return;
   for (const AimotiveFrame& frame : readAimotiveFrames(path("frames.csv"))) {
     if (!inside(frame.t)) continue;
-    ImportedImage image;
-    image.label = kCameraFront;
-    image.path = fileOfStem(dir, fmt::format("{:06}", frame.frame), {".jpg", ".png"});
-    image.stamp = stampOf(frame.t);
-    image.camera = calibration_.camera;
-    image.T_ego_camera = calibration_.T_body_camera;
-    image.distortion = calibration_.distortion;
+    const ImportedImage image{kCameraFront,
+                              fileOfStem(dir, fmt::format("{:06}", frame.frame), {".jpg", ".png"}),
+                              stampOf(frame.t),
+                              calibration_.camera,
+                              calibration_.T_body_camera,
+                              calibration_.distortion};
     if (image.path.empty()) {
       log.missing("image", dir, frame.frame);
       continue;
@@ -162,14 +159,9 @@ void AimotiveImporter::writeTurn(const AimotiveTurn& turn, ImportLog& log) const
   const Stamp stamp = stampOf(turn.middle());
   log.frame(stamp, turn.number);
   const std::optional<LidarCloud> cloud = readTurn(turn, log);
-  if (cloud) {
-    SensorFrame out;
-    out.sensor = kLidarTop;
-    out.stamp = stamp;
-    out.T_ego_sensor = calibration_.T_body_lidar;
-    out.data = inFrame(*cloud, calibration_.T_body_lidar.inverse());
-    log.sensor(out);
-  }
+  if (cloud)
+    log.sensor(kLidarTop, stamp, calibration_.T_body_lidar,
+               inFrame(*cloud, calibration_.T_body_lidar.inverse()));
   addTruth(turn, cloud, log);
 }
 

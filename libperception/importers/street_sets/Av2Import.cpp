@@ -10,6 +10,7 @@
 
 #include "libperception/core/Csv.h"
 #include "libperception/core/Error.h"
+#include "libperception/core/PoseSteps.h"
 #include "libperception/importers/ImportText.h"
 #include "libperception/importers/Importer.h"
 #include "libperception/importers/SensorLabels.h"

@@ -6,9 +6,11 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <utility>
 
 #include "libperception/core/Csv.h"
 #include "libperception/core/Error.h"
+#include "libperception/core/math/Median.h"
 #include "libperception/importers/ImportText.h"
 #include "libperception/importers/Importer.h"
 #include "libperception/importers/SensorLabels.h"
@@ -124,10 +126,7 @@ void Comma2k19Importer::readGnss(ImportLog& log) {
   std::vector<double> offsets;
   for (std::size_t i = 0; i < gnss.csv.rows(); ++i)
     offsets.push_back(gnss.at(i, "utc_ms") * 1e-3 - gnss.time(i));
-  std::nth_element(offsets.begin(),
-                   offsets.begin() + static_cast<std::ptrdiff_t>(offsets.size() / 2),
-                   offsets.end());
-  utc_offset_ = offsets[offsets.size() / 2];
+  utc_offset_ = medianOf(std::move(offsets));
   readRadar(log);  // determines the imported part
   for (std::size_t i = 0; i < gnss.csv.rows(); ++i) {
     if (!inside(gnss.time(i))) continue;
@@ -157,7 +156,6 @@ void Comma2k19Importer::readRadar(ImportLog& log) {
   std::int64_t number = 0;
   bool any = false;
   for (std::size_t i = 0; i < radar.csv.rows();) {
-    SensorFrame scan;
     RadarReturns returns;
     returns.max_range = kRadarRange;
     const double begin = radar.time(i);
@@ -171,13 +169,9 @@ void Comma2k19Importer::readRadar(ImportLog& log) {
     if (!any) from_ = t;
     any = true;
     to_ = t;
-    scan.sensor = kRadarFront;
-    scan.stamp = stampOf(t);
-    scan.T_ego_sensor = T_ego_radar;
-    scan.data = std::move(returns);
-    log.at(scan.stamp, [scan, frame, &log] {
-      log.frame(scan.stamp, frame);
-      log.sensor(scan);
+    log.at(stampOf(t), [=, &log, stamp = stampOf(t)] {
+      log.frame(stamp, frame);
+      log.sensor(kRadarFront, stamp, T_ego_radar, returns);
     });
   }
   if (!any) throw DataError(path("radar_tracks.csv").string() + ": none of the wanted scans");

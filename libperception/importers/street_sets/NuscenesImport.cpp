@@ -5,6 +5,7 @@
 #include <cmath>
 #include <filesystem>
 #include <map>
+#include <utility>
 
 #include "libperception/core/Error.h"
 #include "libperception/importers/ImportText.h"
@@ -127,19 +128,17 @@ void NuscenesImporter::queue(const NuscenesData& data, const NuscenesSensor& sen
     return;
   }
   log.at(data.stamp, [=, &log] {
-    SensorFrame out;
-    out.sensor = sensor.channel, out.stamp = data.stamp, out.T_ego_sensor = sensor.T_ego_sensor;
     if (lidar) {
       CloudFormat format;
       format.columns = {"x", "y", "z", "intensity", "ring"};
       format.intensity_max = 255, format.max_range = kHdl32Range;
-      out.data = readCloudFile(path, format);
+      LidarCloud cloud = readCloudFile(path, format);
       log.ego(data.stamp, T_world_global_ * data.T_global_ego);
       if (data.key) log.frame(data.stamp, data.sample);
+      log.sensor(sensor.channel, data.stamp, sensor.T_ego_sensor, std::move(cloud));
     } else {
-      out.data = nuscenesReturns(path);
+      log.sensor(sensor.channel, data.stamp, sensor.T_ego_sensor, nuscenesReturns(path));
     }
-    log.sensor(out);
   });
 }
 

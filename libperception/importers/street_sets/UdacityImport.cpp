@@ -66,8 +66,6 @@ void UdacityImporter::write(const TextRow& row, std::int64_t number, ImportLog& 
   const Stamp stamp{static_cast<std::int64_t>(microseconds) * 1000};
   log.ego(stamp, Pose3::Identity());
   log.frame(stamp, number);
-  SensorFrame out;
-  out.stamp = stamp;
   if (laser) {
     ObjectDetections found;
     ObjectDetection& object = found.objects.emplace_back();
@@ -75,18 +73,15 @@ void UdacityImporter::write(const TextRow& row, std::int64_t number, ImportLog& 
     object.score = 1;
     object.space_box = ObjectDetection::SpaceBox{Vector3(row.real(1), row.real(2), 0), 0,
                                                  kRadarPointSize, kRadarPointSize, kRadarPointSize};
-    out.sensor = kLaserLabel;
-    out.data = std::move(found);
+    log.sensor(kLaserLabel, stamp, Pose3::Identity(), std::move(found));
   } else {
     RadarReturns returns;
     RadarReturn& r = returns.returns.emplace_back();
     r.range = row.real(1);
     r.bearing = wrapAngle(row.real(2));
     r.range_rate = row.real(3);
-    out.sensor = kUdacityRadar;
-    out.data = std::move(returns);
+    log.sensor(kUdacityRadar, stamp, Pose3::Identity(), std::move(returns));
   }
-  log.sensor(out);
   TruthObject object = truth(row, first);
   object.frame = number;
   log.truth(stamp, std::move(object));

@@ -10,7 +10,7 @@
 #include "libperception/importers/Importer.h"
 #include "libperception/importers/SensorLabels.h"
 #include "libperception/importers/clouds/ImportClouds.h"
-#include "libperception/importers/kitti/KittiFiles.h"
+#include "libperception/importers/kitti/KittiLabels.h"
 #include "libperception/importers/street_sets/VodFiles.h"
 
 namespace perception {
@@ -54,9 +54,6 @@ class VodImporter final : public Importer {
   void declare(CLI::App& cli) override {
     cli.add_option("--dir", dir_, "folder with lidar_points/ ... or with lidar/training/ ...")
         ->required();
-  }
-  void prepare(ImportOptions& options) override {
-    if (options.rate <= 0) options.rate = 10;
   }
   void run(ImportLog& log) override;
 
@@ -185,29 +182,11 @@ void VodImporter::write(const Frame& frame, Stamp stamp, bool still, bool last,
   if (carries) ego(-1);
   if (has_ego) ego(0);
   if (last) log.frame(stamp, frame.number);  // of a frame that is shown repeatedly
-  SensorFrame out;
-  out.stamp = stamp;
-  if (frame.cloud) {
-    out.sensor = kLidarTop;
-    out.T_ego_sensor = T_ego_lidar_;
-    out.data = *frame.cloud;
-    log.sensor(out);
-  }
-  if (frame.has_radar) {
-    out.sensor = kRadarFront;
-    out.T_ego_sensor = T_ego_radar;
-    out.data = returnsOf(frame.radar, still);
-    log.sensor(out);
-  }
-  if (last && !frame.image.empty()) {
-    ImportedImage image;
-    image.label = kCameraFront;
-    image.path = frame.image;
-    image.stamp = stamp;
-    image.camera = frame.calibration.camera;
-    image.T_ego_camera = T_ego_camera;
-    log.image(image, frame.number);
-  }
+  if (frame.cloud) log.sensor(kLidarTop, stamp, T_ego_lidar_, *frame.cloud);
+  if (frame.has_radar) log.sensor(kRadarFront, stamp, T_ego_radar, returnsOf(frame.radar, still));
+  if (last && !frame.image.empty())
+    log.image({kCameraFront, frame.image, stamp, frame.calibration.camera, T_ego_camera},
+              frame.number);
   if (last) writeTruth(frame, stamp, T_world_ego * T_ego_lidar_, log);
   if (carries) ego(1);
 }

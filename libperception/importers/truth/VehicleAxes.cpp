@@ -4,6 +4,9 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <utility>
+
+#include "libperception/core/math/Median.h"
 
 namespace perception {
 namespace {
@@ -49,9 +52,7 @@ std::optional<double> heightAboveRoad(const std::vector<FrameFile>& scans,
   for (std::size_t i = 0; i < scans.size(); i += step)
     if (const auto height = heightIn(read(scans[i].path))) heights.push_back(*height);
   if (heights.empty()) return {};
-  const auto middle = heights.begin() + static_cast<std::ptrdiff_t>(heights.size() / 2);
-  std::nth_element(heights.begin(), middle, heights.end());
-  return *middle;
+  return medianOf(std::move(heights));
 }
 
 std::optional<Vector3> travelDirection(const std::vector<StampedPose>& poses) {

@@ -112,17 +112,12 @@ void BoreasImporter::addScans(const std::vector<FrameFile>& scans, ImportLog& lo
     last_ = stamp;
     log.at(stamp, [=, &log] {
       log.frame(stamp, file.number);
-      SensorFrame out;
-      out.sensor = kLidarTop;
-      out.stamp = stamp;
-      out.T_ego_sensor = T_ego_lidar_;
-      out.data = scan(file.path);
+      LidarCloud cloud = scan(file.path);
       const auto pose = poseBetween(poses_, stamp);
       const std::string boxes = fileOfStem(labels, file.stem, {".txt"});
       if (labeled && !boxes.empty() && pose)
-        truth->add(readBoreasBoxes(boxes), file.number, stamp, *pose * T_ego_lidar_,
-                   std::get<LidarCloud>(out.data));
-      log.sensor(out);
+        truth->add(readBoreasBoxes(boxes), file.number, stamp, *pose * T_ego_lidar_, cloud);
+      log.sensor(kLidarTop, stamp, T_ego_lidar_, std::move(cloud));
     });
   }
 }
@@ -135,13 +130,9 @@ void BoreasImporter::addRadar(ImportLog& log) {
     const Stamp stamp = stampOfBoreas(file);
     if (!inside(stamp)) continue;
     log.at(stamp, [=, &log] {
-      SensorFrame out;
-      out.sensor = kRadarTop;
-      out.stamp = stamp;
-      out.T_ego_sensor = T_ego_radar;
       const BoreasRadar picture = readBoreasRadar(file.path);
-      out.data = radarReturnsOf(picture.power, picture.azimuths, kBoreasRangeOffset, radar_);
-      log.sensor(out);
+      log.sensor(kRadarTop, stamp, T_ego_radar,
+                 radarReturnsOf(picture.power, picture.azimuths, kBoreasRangeOffset, radar_));
     });
   }
 }

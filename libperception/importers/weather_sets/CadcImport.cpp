@@ -5,6 +5,7 @@
 #include <cmath>
 #include <filesystem>
 #include <optional>
+#include <utility>
 
 #include "libperception/core/Error.h"
 #include "libperception/importers/ImportText.h"
@@ -130,17 +131,12 @@ void CadcImporter::addScans(const KittiRawSeries& scans, ImportLog& log) {
     if (!log.wants(file.number)) continue;
     log.at(scans.stamps[i], [this, &log, &truth, file, stamp = scans.stamps[i]] {
       log.frame(stamp, file.number);
-      SensorFrame out;
-      out.sensor = kLidarTop;
-      out.stamp = stamp;
-      out.T_ego_sensor = T_ego_lidar_;
-      out.data = scan(file.path);
+      LidarCloud cloud = scan(file.path);
       const auto pose = poseBetween(poses_, stamp);
       const auto k = static_cast<std::size_t>(file.number);
       if (k < boxes_.size() && pose)
-        truth.add(boxes_[k], file.number, stamp, *pose * T_ego_lidar_,
-                  std::get<LidarCloud>(out.data));
-      log.sensor(out);
+        truth.add(boxes_[k], file.number, stamp, *pose * T_ego_lidar_, cloud);
+      log.sensor(kLidarTop, stamp, T_ego_lidar_, std::move(cloud));
     });
   }
   log.writeInOrder();

@@ -10,6 +10,7 @@
 
 #include "libperception/core/Csv.h"
 #include "libperception/core/Error.h"
+#include "libperception/core/PoseSteps.h"
 #include "libperception/importers/ImportText.h"
 #include "libperception/importers/Importer.h"
 #include "libperception/importers/SensorLabels.h"
@@ -107,19 +108,10 @@ void RadiateImporter::addRadar(ImportLog& log) {
     last_ = stamp;
     log.at(stamp, [this, stamp, file = file, &log] {
       log.frame(stamp, file.number);
-      SensorFrame out;
-      out.sensor = kRadarTop;
-      out.stamp = stamp;
-      out.T_ego_sensor = makePose(0, 0, radar_height_, 0);
-      out.data = radarReturnsOf(file.path, params_.radar);
-      log.sensor(out);
-      if (params_.radar_images) {
-        ImportedImage image;
-        image.label = "RADAR_PICTURE";
-        image.path = file.path;
-        image.stamp = stamp;
-        log.image(image, file.number);
-      }
+      log.sensor(kRadarTop, stamp, makePose(0, 0, radar_height_, 0),
+                 radarReturnsOf(file.path, params_.radar));
+      if (params_.radar_images)
+        log.image({"RADAR_PICTURE", file.path, stamp, {}, Pose3::Identity()}, file.number);
     });
   }
   if (!first_)
@@ -134,12 +126,7 @@ void RadiateImporter::addLidar(ImportLog& log) {
   for (const auto& [file, stamp] : timedFiles(path("velo_lidar"), kCsvEndings, times, false, log)) {
     if (!inside(stamp)) continue;
     log.at(stamp, [this, stamp = stamp, file = file, &log] {
-      SensorFrame out;
-      out.sensor = kLidarTop;
-      out.stamp = stamp;
-      out.T_ego_sensor = T_ego_lidar_;
-      out.data = readRadiateScan(file.path);
-      log.sensor(out);
+      log.sensor(kLidarTop, stamp, T_ego_lidar_, readRadiateScan(file.path));
     });
   }
 }
@@ -155,13 +142,8 @@ void RadiateImporter::addImages(ImportLog& log) {
   for (const auto& [file, stamp] :
        timedFiles(path("zed_left"), {".png", ".jpg"}, times, false, log)) {
     if (!inside(stamp)) continue;
-    ImportedImage image;
-    image.label = kCameraLeft;
-    image.path = file.path;
-    image.stamp = stamp;
-    image.camera = calibration_.model;
-    image.T_ego_camera = T_ego_camera;
-    image.distortion = calibration_.distortion;
+    const ImportedImage image{kCameraLeft,        file.path,    stamp,
+                              calibration_.model, T_ego_camera, calibration_.distortion};
     log.at(image.stamp, [image, number = file.number, &log] { log.image(image, number); });
   }
 }

@@ -13,7 +13,7 @@
 #include "libperception/importers/Importer.h"
 #include "libperception/importers/SensorLabels.h"
 #include "libperception/importers/clouds/ImportClouds.h"
-#include "libperception/importers/kitti/KittiImport.h"
+#include "libperception/importers/kitti/KittiFiles.h"
 #include "libperception/importers/truth/LabeledBoxes.h"
 #include "libperception/importers/truth/PointLabelFiles.h"
 #include "libperception/importers/truth/VehicleAxes.h"
@@ -78,9 +78,6 @@ class SnowImporter final : public Importer {
             ->check(CLI::Range(0.0, 10.0));
     if (set_.lidar_height) height->default_str(fmt::format("{}", *set_.lidar_height));
   }
-  void prepare(ImportOptions& options) override {
-    if (options.rate <= 0) options.rate = 10;  // both sets' README
-  }
   void run(ImportLog& log) override;
 
  private:
@@ -142,16 +139,11 @@ void SnowImporter::run(ImportLog& log) {
                       : T_ego_lidar * poses.front().inverse() * poses[i] * T_ego_lidar.inverse();
     if (!poses.empty()) log.ego(stamp, T_world_ego);
     log.frame(stamp, file.number);
-    SensorFrame scan;
-    scan.sensor = kLidarTop;
-    scan.stamp = stamp;
-    scan.T_ego_sensor = T_ego_lidar;
     LidarCloud cloud = readCloudFile(file.path, format);
     for (const std::uint32_t label : keepPointLabels(dir_, file, cloud.size(), log))
       ++counts_[label & 0xFFFF];  // the upper half is an instance
     addBoxes(file, stamp, T_world_ego * T_ego_lidar, cloud, truth);
-    scan.data = std::move(cloud);
-    log.sensor(scan);
+    log.sensor(kLidarTop, stamp, T_ego_lidar, std::move(cloud));
     log.progress(static_cast<std::int64_t>(i + 1), static_cast<std::int64_t>(files.size()));
   }
   if (poses.empty()) log.note("no poses.txt: the vehicle's motion is not known");

@@ -11,8 +11,6 @@
 namespace perception {
 namespace {
 
-constexpr int kZstdLevel = 1;
-
 // Each gives the number of bytes that came out; what does not fit or is damaged throws.
 std::size_t fromBz2(std::string_view bytes, std::string& out) {
   auto size = static_cast<unsigned>(out.size());
@@ -79,12 +77,6 @@ std::string inflatedZstd(std::string_view frame) {
   if (size == ZSTD_CONTENTSIZE_ERROR || size == ZSTD_CONTENTSIZE_UNKNOWN)
     throw std::runtime_error("a zstd frame that does not tell its size");
   return inflated("zstd", frame, size);
-}
-
-std::string zstdOf(std::string_view bytes) {
-  std::string out(ZSTD_compressBound(bytes.size()), '\0');
-  out.resize(ZSTD_compress(out.data(), out.size(), bytes.data(), bytes.size(), kZstdLevel));
-  return out;
 }
 
 }  // namespace perception

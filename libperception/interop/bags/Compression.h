@@ -14,7 +14,5 @@ inline constexpr std::uint64_t kMostInflated = std::uint64_t{1} << 28;
 /// The content of one zstd frame that tells its size, at most kMostInflated. Throws
 /// std::runtime_error.
 std::string inflatedZstd(std::string_view frame);
-/// One zstd frame.
-std::string zstdOf(std::string_view bytes);
 
 }  // namespace perception

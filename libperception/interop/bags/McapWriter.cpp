@@ -4,25 +4,12 @@
 
 #include <algorithm>
 
+#include "libperception/interop/bags/McapFormat.h"
+
 namespace perception {
 namespace {
 
-constexpr std::string_view kMagic("\x89MCAP0\r\n", 8);
 constexpr std::size_t kChunkBytes = 4 << 20;
-
-// Opcodes of the specification.
-enum Op : std::uint8_t {
-  kHeader = 1,
-  kFooter = 2,
-  kSchema = 3,
-  kChannel = 4,
-  kMessage = 5,
-  kChunk = 6,
-  kMessageIndex = 7,
-  kChunkIndex = 8,
-  kStatistics = 11,
-  kDataEnd = 15
-};
 
 // Unsigned numbers, little endian whatever the processor.
 template <typename T>
@@ -36,7 +23,7 @@ std::string sized(std::string_view text) {
   return number(static_cast<std::uint32_t>(text.size())).append(text);
 }
 
-std::string record(Op op, std::string_view content) {
+std::string record(mcap::Op op, std::string_view content) {
   std::string bytes(1, static_cast<char>(op));
   return bytes.append(number(static_cast<std::uint64_t>(content.size()))).append(content);
 }
@@ -54,8 +41,8 @@ void McapWriter::Span::add(std::uint64_t t, bool first) {
 }
 
 McapWriter::McapWriter(const std::string& path, const std::string& profile) : file_(path) {
-  put(kMagic);
-  put(record(kHeader, sized(profile) + sized("perception")));
+  put(mcap::kMagic);
+  put(record(mcap::kHeader, sized(profile) + sized("perception")));
 }
 
 void McapWriter::put(std::string_view bytes) {
@@ -70,16 +57,18 @@ std::uint16_t McapWriter::addChannel(const std::string& topic, const std::string
   const auto [known, is_new] =
       schema_ids_.try_emplace(schema.name, static_cast<std::uint16_t>(schema_ids_.size() + 1));
   if (is_new) {
-    const std::string bytes = record(kSchema, number(known->second) + sized(schema.name) +
-                                                  sized(schema.encoding) + sized(schema.text));
+    const std::string bytes =
+        record(mcap::kSchema, number(known->second) + sized(schema.name) + sized(schema.encoding) +
+                                  sized(schema.text));
     schemas_ += bytes;
     chunk_ += bytes;
   }
   const auto id = static_cast<std::uint16_t>(counts_.size());
   std::string entries;
   for (const auto& [name, value] : metadata) entries += sized(name) + sized(value);
-  const std::string bytes = record(kChannel, number(id) + number(known->second) + sized(topic) +
-                                                 sized(encoding) + sized(entries));
+  const std::string bytes =
+      record(mcap::kChannel,
+             number(id) + number(known->second) + sized(topic) + sized(encoding) + sized(entries));
   channels_ += bytes;
   chunk_ += bytes;
   counts_.push_back(0);
@@ -91,7 +80,7 @@ void McapWriter::write(std::uint16_t channel, Stamp stamp, std::string_view mess
   chunk_span_.add(t, index_.empty());
   span_.add(t, messages_ == 0);
   index_[channel].emplace_back(t, chunk_.size());
-  chunk_ += record(kMessage,
+  chunk_ += record(mcap::kMessage,
                    (number(channel) + number(sequence_++) + number(t) + number(t)).append(message));
   ++messages_;
   ++counts_.at(channel);
@@ -103,7 +92,7 @@ void McapWriter::finishChunk() {
   const std::uint64_t begin = position_, size = chunk_.size();
   const std::string span = number(chunk_span_.begin) + number(chunk_span_.end);
   put(record(
-      kChunk,
+      mcap::kChunk,
       (span + number(size) + number(crcOf(chunk_)) + sized("") + number(size)).append(chunk_)));
   const std::uint64_t end = position_;
   std::string offsets;
@@ -111,11 +100,11 @@ void McapWriter::finishChunk() {
     offsets += number(channel) + number(position_);
     std::string list;
     for (const auto& [t, offset] : entries) list += number(t) + number(offset);
-    put(record(kMessageIndex, number(channel) + sized(list)));
+    put(record(mcap::kMessageIndex, number(channel) + sized(list)));
   }
-  chunk_indexes_ +=
-      record(kChunkIndex, span + number(begin) + number(end - begin) + sized(offsets) +
-                              number(position_ - end) + sized("") + number(size) + number(size));
+  chunk_indexes_ += record(mcap::kChunkIndex, span + number(begin) + number(end - begin) +
+                                                  sized(offsets) + number(position_ - end) +
+                                                  sized("") + number(size) + number(size));
   ++chunks_;
   chunk_.clear();
   index_.clear();
@@ -128,23 +117,23 @@ std::string McapWriter::statistics() const {
     counts += number(static_cast<std::uint16_t>(i)) + number(counts_[i]);
   }
   constexpr std::uint32_t kNoAttachments = 0, kNoMetadata = 0;
-  return record(kStatistics, number(messages_) +
-                                 number(static_cast<std::uint16_t>(schema_ids_.size())) +
-                                 number(static_cast<std::uint32_t>(counts_.size())) +
-                                 number(kNoAttachments) + number(kNoMetadata) + number(chunks_) +
-                                 number(span_.begin) + number(span_.end) + sized(counts));
+  return record(mcap::kStatistics,
+                number(messages_) + number(static_cast<std::uint16_t>(schema_ids_.size())) +
+                    number(static_cast<std::uint32_t>(counts_.size())) + number(kNoAttachments) +
+                    number(kNoMetadata) + number(chunks_) + number(span_.begin) +
+                    number(span_.end) + sized(counts));
 }
 
 void McapWriter::close() {
   finishChunk();
-  put(record(kDataEnd, number(crc_)));
+  put(record(mcap::kDataEnd, number(crc_)));
   const std::uint64_t start = position_;
   std::string summary = schemas_ + channels_ + statistics() + chunk_indexes_;
   const std::uint64_t footer_bytes = 20, no_offsets = 0;
-  summary += static_cast<char>(kFooter);
+  summary += static_cast<char>(mcap::kFooter);
   summary += number(footer_bytes) + number(start) + number(no_offsets);
   put(summary + number(crcOf(summary)));
-  put(kMagic);
+  put(mcap::kMagic);
   file_.close();
 }
 

@@ -6,19 +6,12 @@
 #include <limits>
 #include <set>
 
+#include "libperception/core/PoseSteps.h"
+
 namespace perception {
 namespace {
 
 constexpr double kReach = 0.2;  // [s] beyond the first and last pose
-
-Pose3 between(const Pose3& a, const Pose3& b, double share) {
-  Pose3 pose = Pose3::Identity();
-  pose.translation() = (1 - share) * a.translation() + share * b.translation();
-  pose.linear() = Eigen::Quaterniond(a.linear())
-                      .slerp(share, Eigen::Quaterniond(b.linear()))
-                      .toRotationMatrix();
-  return pose;
-}
 
 }  // namespace
 
@@ -51,7 +44,8 @@ std::optional<Pose3> TransformTree::inParent(const Step& step, Stamp stamp) cons
   const PoseSeries::Row after = poses.row(at);
   if (after.stamp == stamp) return after.pose;
   const PoseSeries::Row before = poses.row(at - 1);
-  return between(before.pose, after.pose, (stamp - before.stamp) / (after.stamp - before.stamp));
+  return interpolate(before.pose, after.pose,
+                     (stamp - before.stamp) / (after.stamp - before.stamp));
 }
 
 std::vector<std::string> TransformTree::ancestors(const std::string& frame) const {

@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "libperception/core/math/Angle.h"
+#include "libperception/core/math/Median.h"
 #include "libperception/simd/Dispatch.h"
 #include "libperception/simd/FastAtan2.h"
 
@@ -66,9 +68,7 @@ double azimuthStep(const ReturnDirections& directions, const std::vector<ReturnG
     if (steps.size() >= kSamples) break;
   }
   if (steps.size() < kLeastSamples) return 0;
-  const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
-  std::nth_element(steps.begin(), middle, steps.end());
-  return static_cast<double>(*middle);
+  return static_cast<double>(medianOf(std::move(steps)));
 }
 
 }  // namespace perception

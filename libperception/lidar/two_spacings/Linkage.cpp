@@ -126,15 +126,6 @@ void link(const LinkageCells& cells, const std::vector<Reach>& reaches, double t
 
 }  // namespace
 
-Partition farPartition(const DoubleLinkage& linkage) {
-  Partition far;
-  far.count = linkage.far_count;
-  far.group.reserve(linkage.near.group.size());
-  for (const std::uint32_t near : linkage.near.group)
-    far.group.push_back(linkage.far_of_near[near]);
-  return far;
-}
-
 DoubleLinkage linkTwice(const std::vector<float>& x, const std::vector<float>& y,
                         double near_threshold, double far_threshold) {
   DoubleLinkage result;

@@ -22,9 +22,6 @@ struct DoubleLinkage {
       parts;  ///< number of near groups in each far group; 1: the same set at both thresholds
 };
 
-/// The far group of every point, numbered in the order of the groups' first points.
-Partition farPartition(const DoubleLinkage& linkage);
-
 /// Single linkage of finite points [m]; `near_threshold` < `far_threshold` [m]. Squared distances
 /// are compared in float.
 DoubleLinkage linkTwice(const std::vector<float>& x, const std::vector<float>& y,

@@ -60,12 +60,6 @@ std::string runMark(const std::vector<std::string>& ids) {
   return mark;
 }
 
-std::vector<std::string> markedRuns(std::string_view bytes) {
-  std::vector<std::string> ids;
-  addMarks(bytes, ids);
-  return ids;
-}
-
 std::vector<std::string> markedRunsOf(const std::string& path) {
   if (const auto what = irregularity(path); !what.empty())
     throw DataError(fmt::format("{}: is {}, expected a file", path, what));

@@ -1,6 +1,5 @@
 #pragma once
 #include <string>
-#include <string_view>
 #include <vector>
 
 namespace perception {
@@ -11,9 +10,7 @@ namespace perception {
 /// lines of "#". Empty ids give no mark.
 std::string runMark(const std::vector<std::string>& ids);
 
-/// The ids in the marks of a file's bytes, in order of appearance, each once.
-std::vector<std::string> markedRuns(std::string_view bytes);
-/// The same of a file, read part by part. Throws DataError.
+/// The ids in the marks of a file, in order of appearance, each once. Throws DataError.
 std::vector<std::string> markedRunsOf(const std::string& path);
 
 /// The file's bytes with the mark at its place; unchanged for an empty mark and for formats that

@@ -8,6 +8,7 @@
 #include <iterator>
 #include <utility>
 
+#include "libperception/core/PoseSteps.h"
 #include "libperception/scene/files/NumberFormat.h"
 #include "libperception/scene/files/TrackedRunReader.h"
 
@@ -177,14 +178,10 @@ std::optional<EgoState> egoAt(const TrackedRun& run, Stamp stamp) {
   const EgoState &a = std::prev(after)->ego, &b = after->ego;
   const double gap = after->stamp - std::prev(after)->stamp;
   if (gap > kPoseGap) return std::nullopt;
-  const double share = (stamp - std::prev(after)->stamp) / gap;
   EgoState ego = a;
   ego.stamp = stamp;
-  ego.T_world_ego.translation() +=
-      share * (b.T_world_ego.translation() - a.T_world_ego.translation());
-  ego.T_world_ego.linear() = Eigen::Quaterniond(a.T_world_ego.linear())
-                                 .slerp(share, Eigen::Quaterniond(b.T_world_ego.linear()))
-                                 .toRotationMatrix();
+  ego.T_world_ego =
+      interpolate(a.T_world_ego, b.T_world_ego, (stamp - std::prev(after)->stamp) / gap);
   return ego;
 }
 

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <iterator>
 
+#include "libperception/core/PoseSteps.h"
 #include "libperception/sensors/ego/EgoFusion.h"
 #include "libperception/sensors/ego/PoseMotion.h"
 #include "libperception/sensors/frames/ToObservation.h"  // kEgoPoseLabel
@@ -40,11 +41,7 @@ EgoState between(const EgoState& a, const EgoState& b, Stamp stamp) {
   const double s = (stamp - a.stamp) / (b.stamp - a.stamp);
   EgoState state = s < 0.5 ? a : b;
   state.stamp = stamp;
-  state.T_world_ego = Pose3::Identity();
-  state.T_world_ego.translation() =
-      (1 - s) * a.T_world_ego.translation() + s * b.T_world_ego.translation();
-  const Eigen::Quaterniond qa(a.T_world_ego.linear()), qb(b.T_world_ego.linear());
-  state.T_world_ego.linear() = qa.slerp(s, qb).toRotationMatrix();
+  state.T_world_ego = interpolate(a.T_world_ego, b.T_world_ego, s);
   state.velocity = (1 - s) * a.velocity + s * b.velocity;
   state.yaw_rate = (1 - s) * a.yaw_rate + s * b.yaw_rate;
   return state;

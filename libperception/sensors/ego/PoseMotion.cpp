@@ -4,10 +4,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 #include <vector>
 
 #include "libperception/core/Frames.h"
 #include "libperception/core/math/Angle.h"
+#include "libperception/core/math/Median.h"
 
 namespace perception {
 namespace {
@@ -49,10 +51,8 @@ class Coordinate {
       misses.push_back(std::abs(miss) / std::sqrt(square));
     }
     if (misses.size() < 3) return 0;
-    const auto middle = misses.begin() + static_cast<std::ptrdiff_t>(misses.size() / 2);
-    std::nth_element(misses.begin(), middle, misses.end());
     constexpr double kMedian = 0.6745;  // of a normal deviate's size
-    return *middle / kMedian;
+    return medianOf(std::move(misses)) / kMedian;
   }
 
  private:

@@ -5,9 +5,11 @@
 #include <cmath>
 #include <exception>
 #include <numeric>
+#include <utility>
 #include <vector>
 
 #include "libperception/core/math/Angle.h"
+#include "libperception/core/math/Median.h"
 
 namespace perception {
 
@@ -109,11 +111,7 @@ PacketLayout layoutOf(const Packet& packet, const Firing& firing, bool banks) {
         (packet.blocks[b].rotation() - packet.blocks[b - 1].rotation() + kFullTurn) % kFullTurn;
     if (by > 0 && by <= kMostStep) turned.push_back(by);
   }
-  if (!turned.empty()) {
-    const auto middle = turned.begin() + static_cast<std::ptrdiff_t>(turned.size() / 2);
-    std::nth_element(turned.begin(), middle, turned.end());
-    layout.units_per_us = *middle / firing.block;
-  }
+  if (!turned.empty()) layout.units_per_us = medianOf(std::move(turned)) / firing.block;
   return layout;
 }
 

@@ -96,7 +96,7 @@ AlteredRecording alteredRecording(const RecordingTask& task, const LabelSink& wr
   WeatheredLog weathered(std::move(scene), *recording.first, task.seed, task.threads,
                          imagesBeside(task.input));
   done.text = weathered.text();
-  RawlogWriter out(task.output, task.gzip_level);
+  RawlogWriter out(task.output);
   removeLabels(task.output);
   out.write(simulatedComment(*recording.first, done.text));
   // Labels are by frame number.

@@ -18,8 +18,7 @@ struct RecordingTask {
   std::string input, output;  ///< rawlogs
   SimulatedWeatherParams weather;
   std::uint64_t seed = 1;
-  int threads = 0;     ///< 0: number of cores
-  int gzip_level = 1;  ///< of the output
+  int threads = 0;  ///< 0: number of cores
 };
 
 /// What became of it.

@@ -161,7 +161,7 @@ TEST_F(CompareRunsTest, TheFilmOfBothIsInThePageAndThatOfOthersIsRefused) {
   ASSERT_NE(a, b);
   ASSERT_EQ(compare(), 0);
   EXPECT_TRUE(says("perception-snapshot -r ")) << "how the film is made";
-  EXPECT_EQ(markedRuns(page()).size(), 2u) << "the page says of which runs it is";
+  EXPECT_EQ(markedRunsOf(app_.out_path).size(), 2u) << "the page says of which runs it is";
   const std::string film = dir_ + "/both.mp4";
   std::ofstream(film) << "film " << a << b;
   ASSERT_EQ(compare({"--film", film}), 0);

@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 #include <mrpt/img/CImage.h>
 #include <mrpt/obs/CObservationImage.h>
-#include <octomap/AbstractOcTree.h>
 #include <octomap/OcTree.h>
 
 #include <array>
@@ -16,6 +15,7 @@
 #include "libperception/scene/files/RunRecord.h"
 #include "libperception/sensors/observations/Conversions.h"
 #include "libperception/sensors/rawlog/RawlogWriter.h"
+#include "tests/gui-offscreen/PictureColors.h"
 
 namespace perception {
 namespace {

@@ -7,7 +7,7 @@
 #include <map>
 #include <set>
 
-#include "libperception/importers/kitti/KittiFiles.h"
+#include "libperception/importers/kitti/KittiLabels.h"
 #include "libperception/lidar/LidarFrontEnd.h"
 #include "libperception/lidar/ground/GroundPlane.h"
 #include "libperception/lidar/outline/BoxFit.h"

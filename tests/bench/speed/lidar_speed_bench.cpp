@@ -19,9 +19,9 @@
 #include "libperception/lidar/LidarFrontEnd.h"
 #include "libperception/lidar/ground/GroundPlane.h"
 #include "libperception/lidar/ground/SplitGround.h"
-#include "libperception/lidar/two_spacings/Linkage.h"
 #include "libperception/lidar/two_spacings/PersonResponse.h"
 #include "tests/bench/speed/LidarScans.h"
+#include "tests/lidar/two_spacings/FarPartition.h"
 
 namespace perception::bench {
 namespace {
@@ -263,7 +263,7 @@ void compareClusters(const std::vector<RecordedScan>& scans, const LidarFrontEnd
       return g.empty() ? 0 : 1 + *std::max_element(g.begin(), g.end());
     };
     const bool same = inOrder(near) == ours.near.group && inOrder(flann) == ours.near.group &&
-                      inOrder(far) == farPartition(ours).group;
+                      inOrder(far) == test::farPartition(ours).group;
     identical += same;
     faults.check(same, fmt::format("scan {}: {} and {} groups, PCL {} and {}, nanoflann {}",
                                    scan.number, ours.near.count, ours.far_count, groups(near),

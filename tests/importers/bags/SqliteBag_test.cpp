@@ -13,12 +13,12 @@
 #include <vector>
 
 #include "libperception/core/math/Random.h"
-#include "libperception/interop/bags/Compression.h"
 #include "libperception/interop/bags/McapWriter.h"
 #include "libperception/interop/bags/ReadingBag.h"
 #include "libperception/interop/ros/RosMessages.h"
 #include "libperception/interop/ros/RosSensors.h"
 #include "tests/importers/ImportFixture.h"
+#include "tests/importers/bags/ZstdFrame.h"
 
 namespace perception {
 namespace {

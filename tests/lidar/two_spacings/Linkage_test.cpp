@@ -6,9 +6,12 @@
 #include <numeric>
 
 #include "libperception/core/math/Random.h"
+#include "tests/lidar/two_spacings/FarPartition.h"
 
 namespace perception {
 namespace {
+
+using test::farPartition;
 
 struct Plane {
   std::vector<float> x, y;

@@ -15,9 +15,11 @@ const std::string kA(64, 'a'), kB(64, '1');
 
 TEST(RunMark, IsFoundInAnyBytesOnceForEachRun) {
   EXPECT_EQ(runMark({kA, "", kB}), "perception run " + kA + ", perception run " + kB);
-  EXPECT_EQ(markedRuns("..." + runMark({kB, kA}) + "\n" + runMark({kB})),
-            (std::vector<std::string>{kB, kA}));
-  EXPECT_TRUE(markedRuns("perception run of Monday, perception run " + kA.substr(1)).empty());
+  const test::TemporaryFolder folder;
+  std::ofstream(folder / "marks") << "..." << runMark({kB, kA}) << "\n" << runMark({kB});
+  EXPECT_EQ(markedRunsOf(folder / "marks"), (std::vector<std::string>{kB, kA}));
+  std::ofstream(folder / "words") << "perception run of Monday, perception run " << kA.substr(1);
+  EXPECT_TRUE(markedRunsOf(folder / "words").empty());
 }
 
 TEST(RunMark, IsFoundAcrossThePartsThatAFileIsReadIn) {

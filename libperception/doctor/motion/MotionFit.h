@@ -3,7 +3,6 @@
 #include <cstddef>
 #include <functional>
 #include <optional>
-#include <vector>
 
 namespace perception {
 
@@ -28,9 +27,6 @@ struct FitResult {
   Eigen::VectorXd sigma;
   std::size_t used = 0;  ///< items
 };
-
-/// The upper one of an even number; of one value or more.
-double medianOf(std::vector<double> values);
 
 /// Gauss-Newton with Cauchy weights; noise of each row by its median residual. Empty with too few
 /// items.

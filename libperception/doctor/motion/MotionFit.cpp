@@ -1,9 +1,12 @@
-#include "libperception/doctor/MotionFit.h"
+#include "libperception/doctor/motion/MotionFit.h"
 
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+#include <utility>
 #include <vector>
+
+#include "libperception/core/math/Median.h"
 
 namespace perception {
 namespace {
@@ -83,12 +86,6 @@ VectorXd jackknife(const std::vector<Block>& blocks, const MatrixXd& H, const Ve
 }
 
 }  // namespace
-
-double medianOf(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 std::optional<FitResult> fitRobustly(const FitProblem& p) {
   FitResult result;

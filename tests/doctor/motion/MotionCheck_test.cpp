@@ -1,4 +1,4 @@
-#include "libperception/doctor/MotionCheck.h"
+#include "libperception/doctor/motion/MotionCheck.h"
 
 #include <gtest/gtest.h>
 
@@ -185,16 +185,6 @@ TEST(MotionCheck, GnssOnASteadyStraightDriveShowsNoClock) {
   const auto check = checkGnssMotion(fixesOf(poses, 0.08), Vector2(0.5, -0.2), poses);
   ASSERT_TRUE(check);
   EXPECT_FALSE(check->clock.observable());
-}
-
-TEST(RadarVelocity, ReturnsThatDisagreeGiveNone) {
-  RadarReturns radar;
-  for (int i = 0; i < 12; ++i) {
-    RadarReturn r;
-    r.range = 20, r.bearing = 0.1 * (i - 6), r.range_rate = 3.0 * ((i * 5) % 12);
-    radar.returns.push_back(r);
-  }
-  EXPECT_FALSE(radarVelocity(radar, stampAt(0)));
 }
 
 }  // namespace

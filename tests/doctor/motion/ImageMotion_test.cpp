@@ -1,4 +1,4 @@
-#include "libperception/doctor/ImageMotion.h"
+#include "libperception/doctor/motion/ImageMotion.h"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,7 @@
 #include <opencv2/imgproc.hpp>
 #include <random>
 
-#include "libperception/doctor/MotionCheck.h"
+#include "libperception/doctor/motion/MotionCheck.h"
 #include "tests/doctor/TestDrive.h"
 
 namespace perception {

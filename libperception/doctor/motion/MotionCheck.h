@@ -1,9 +1,9 @@
 #pragma once
-#include <array>
 #include <optional>
 #include <vector>
 
-#include "libperception/doctor/ImageMotion.h"
+#include "libperception/doctor/motion/ImageMotion.h"
+#include "libperception/doctor/motion/RadarVelocity.h"
 #include "libperception/measurement/frames/SensorFrame.h"
 
 namespace perception {
@@ -23,16 +23,6 @@ struct MotionCheck {
   Value clock;             ///< [s] stamps are late by this
   std::size_t used = 0;    ///< scans
 };
-
-/// Velocity of a radar over ground, from the range rates of standing things.
-struct SensorVelocity {
-  Stamp stamp;
-  Vector2 velocity = Vector2::Zero();         ///< [m/s] sensor frame
-  Matrix2 information = Matrix2::Identity();  ///< sum of the squared directions of the returns
-};
-/// Of the largest set of returns whose range rates agree with one motion; empty where it is not
-/// the greater part of them or they lie in one direction.
-std::optional<SensorVelocity> radarVelocity(const RadarReturns& radar, Stamp stamp);
 
 /// `scans`: poses of the vehicle by odometry from the lidar under the log's mounting. `poses`: the
 /// log's, in any order. Empty without enough of both at the same time, or if the vehicle stands.

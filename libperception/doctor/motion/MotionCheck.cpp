@@ -1,11 +1,15 @@
-#include "libperception/doctor/MotionCheck.h"
+#include "libperception/doctor/motion/MotionCheck.h"
 
 #include <Eigen/Cholesky>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 
-#include "libperception/doctor/MotionFit.h"
+#include "libperception/core/PoseSteps.h"
+#include "libperception/core/math/Median.h"
+#include "libperception/doctor/motion/Course.h"
+#include "libperception/doctor/motion/MotionFit.h"
 
 namespace perception {
 namespace {
@@ -16,7 +20,7 @@ using Eigen::VectorXd;
 enum Parameter { kYaw, kPitch, kRoll, kAhead, kLeft, kClock, kScale, kParameters };
 
 constexpr double kMotionWindow = 0.4;  ///< [s] of a motion that is compared: several scans
-constexpr double kLongestStep = 1.0;   ///< [s] between poses or scans of one motion
+constexpr double kLongestStep = 1.0;   ///< [s] between the scans of one motion
 constexpr double kClockRange = 0.5;    ///< [s] clock offsets searched, on both sides
 constexpr double kClockStep = 0.02;    ///< [s]
 constexpr double kMovingSpeed = 1;     ///< [m/s] slower, the direction of travel is noise
@@ -27,49 +31,6 @@ constexpr double kAngleWrong = radians(1), kPlaceWrong = 0.1, kClockWrong = 0.02
 /// [rad, m, s, 1] standard deviations before the log is seen (assumed).
 constexpr std::array<double, kParameters> kPrior{radians(15), radians(15), radians(15), 1,
                                                  1,           0.3,         0.05};
-
-/// The vehicle's pose by the log at any time.
-class Course {
- public:
-  explicit Course(std::vector<EgoState> poses) : poses_(std::move(poses)) {
-    std::stable_sort(poses_.begin(), poses_.end(),
-                     [](const EgoState& a, const EgoState& b) { return a.stamp < b.stamp; });
-    poses_.erase(std::unique(poses_.begin(), poses_.end(),
-                             [](const auto& a, const auto& b) { return a.stamp == b.stamp; }),
-                 poses_.end());
-  }
-  std::optional<Pose3> at(Stamp stamp, double later) const {
-    const Stamp t{stamp.ns + static_cast<std::int64_t>(std::llround(later * 1e9))};
-    const auto next = std::lower_bound(poses_.begin(), poses_.end(), t,
-                                       [](const EgoState& a, Stamp b) { return a.stamp < b; });
-    if (next == poses_.end() || (next == poses_.begin() && t < next->stamp)) return std::nullopt;
-    if (next->stamp == t) return next->T_world_ego;
-    const EgoState &a = *(next - 1), &b = *next;
-    const double dt = b.stamp - a.stamp, share = (t - a.stamp) / dt;
-    if (dt > kLongestStep) return std::nullopt;
-    Pose3 out = Pose3::Identity();
-    out.translation() =
-        (1 - share) * a.T_world_ego.translation() + share * b.T_world_ego.translation();
-    out.linear() = Eigen::Quaterniond(a.T_world_ego.linear())
-                       .slerp(share, Eigen::Quaterniond(b.T_world_ego.linear()))
-                       .toRotationMatrix();
-    return out;
-  }
-  /// Motion from one instant to another, in the vehicle frame of the first.
-  std::optional<Pose3> motion(Stamp from, Stamp to, double later) const {
-    const auto a = at(from, later), b = at(to, later);
-    if (!a || !b) return std::nullopt;
-    return a->inverse() * *b;
-  }
-
- private:
-  std::vector<EgoState> poses_;
-};
-
-Vector3 turnOf(const Pose3& motion) {
-  const Eigen::AngleAxisd turn(motion.linear());
-  return turn.angle() * turn.axis();
-}
 
 /// A motion that the sensor saw.
 struct Seen {
@@ -159,9 +120,11 @@ double climbOf(const std::vector<Seen>& seen, const Course& course) {
   return climbs.empty() ? 0 : medianOf(std::move(climbs));
 }
 
-MotionCheck checkOf(const FitResult& fit) {
+std::optional<MotionCheck> checkOf(const FitProblem& problem) {
+  const auto fit = fitRobustly(problem);
+  if (!fit) return std::nullopt;
   const auto value = [&fit](Parameter p, double enough, double wrong) {
-    return MotionCheck::Value{fit.value[p], fit.sigma[p], enough, wrong};
+    return MotionCheck::Value{fit->value[p], fit->sigma[p], enough, wrong};
   };
   MotionCheck check;
   check.yaw = value(kYaw, kAngleEnough, kAngleWrong);
@@ -170,7 +133,7 @@ MotionCheck checkOf(const FitResult& fit) {
   check.ahead = value(kAhead, kPlaceEnough, kPlaceWrong);
   check.left = value(kLeft, kPlaceEnough, kPlaceWrong);
   check.clock = value(kClock, kClockEnough, kClockWrong);
-  check.used = fit.used;
+  check.used = fit->used;
   return check;
 }
 
@@ -182,45 +145,6 @@ Eigen::Matrix3d rotationOf(const VectorXd& x) {
 
 bool MotionCheck::Value::isWrong() const {
   return observable() && std::abs(error) > std::max(wrong, 3 * sigma);
-}
-
-std::optional<SensorVelocity> radarVelocity(const RadarReturns& radar, Stamp stamp) {
-  constexpr double kAgree = 0.3;                  // [m/s] about three times a radar's noise
-  constexpr std::size_t kFewest = 5, kMost = 40;  // returns; of the pairs that are tried
-  constexpr double kSpread = 0.02;                // least information across, per return
-  std::vector<std::pair<Vector2, double>> all;    // direction, range rate
-  for (const RadarReturn& r : radar.returns)
-    if (r.has_rate) all.emplace_back(rotate2(r.bearing, Vector2(1, 0)), r.range_rate);
-  if (all.size() < kFewest) return std::nullopt;
-  const auto agrees = [&](const auto& r, const Vector2& v) {
-    return std::abs(r.second + r.first.dot(v)) < kAgree;
-  };
-  const std::size_t every = all.size() / kMost + 1;
-  Vector2 velocity = Vector2::Zero();
-  std::size_t most = 0;
-  for (std::size_t i = 0; i < all.size(); i += every) {
-    for (std::size_t j = i + every; j < all.size(); j += every) {
-      Matrix2 D;
-      D << all[i].first.transpose(), all[j].first.transpose();
-      if (std::abs(D.determinant()) < 0.1) continue;
-      const Vector2 v = D.inverse() * -Vector2(all[i].second, all[j].second);
-      const auto n = static_cast<std::size_t>(
-          std::count_if(all.begin(), all.end(), [&](const auto& r) { return agrees(r, v); }));
-      if (n > most) most = n, velocity = v;
-    }
-  }
-  if (most < kFewest || 2 * most < all.size()) return std::nullopt;
-  SensorVelocity out{stamp, velocity, Matrix2::Zero()};
-  Vector2 sum = Vector2::Zero();
-  for (const auto& r : all) {
-    if (!agrees(r, velocity)) continue;
-    out.information += r.first * r.first.transpose();
-    sum -= r.first * r.second;
-  }
-  if (out.information.determinant() < kSpread * static_cast<double>(most * most))
-    return std::nullopt;
-  out.velocity = out.information.inverse() * sum;
-  return out;
 }
 
 std::optional<MotionCheck> checkLidarMotion(const std::vector<EgoState>& scans,
@@ -253,10 +177,9 @@ std::optional<MotionCheck> checkLidarMotion(const std::vector<EgoState>& scans,
     r.tail<3>() = A.translation() - (1 + x[kScale]) * (R * B->translation() + t - A.linear() * t);
     return true;
   };
-  const auto fit = fitRobustly(p);
-  if (!fit) return std::nullopt;
-  MotionCheck check = checkOf(*fit);
-  check.pitch.sigma = std::hypot(check.pitch.sigma, climbOf(seen, course));
+  auto check = checkOf(p);
+  if (!check) return std::nullopt;
+  check->pitch.sigma = std::hypot(check->pitch.sigma, climbOf(seen, course));
   return check;
 }
 
@@ -287,9 +210,7 @@ std::optional<MotionCheck> checkRadarMotion(const std::vector<SensorVelocity>& s
     r = U * (moving[k].velocity - seen_v);
     return true;
   };
-  const auto fit = fitRobustly(p);
-  if (!fit) return std::nullopt;
-  return checkOf(*fit);
+  return checkOf(p);
 }
 
 std::optional<MotionCheck> checkImageMotion(const std::vector<CameraMotion>& motions,
@@ -318,11 +239,10 @@ std::optional<MotionCheck> checkImageMotion(const std::vector<CameraMotion>& mot
     r.tail<2>() = (seen[k].motion.translation() - way.normalized()).tail<2>();
     return true;
   };
-  const auto fit = fitRobustly(p);
-  if (!fit) return std::nullopt;
-  MotionCheck check = checkOf(*fit);
-  check.ahead = check.left = MotionCheck::Value{0, 1, 0, 0};
-  check.pitch.sigma = std::hypot(check.pitch.sigma, climbOf(seen, course));
+  auto check = checkOf(p);
+  if (!check) return std::nullopt;
+  check->ahead = check->left = MotionCheck::Value{0, 1, 0, 0};
+  check->pitch.sigma = std::hypot(check->pitch.sigma, climbOf(seen, course));
   return check;
 }
 
@@ -353,10 +273,9 @@ std::optional<MotionCheck> checkGnssMotion(const std::vector<AntennaPlace>& fixe
     r = ways[k].step - (1 + x[kScale]) * rotate2(x[kYaw], *d);
     return true;
   };
-  const auto fit = fitRobustly(p);
-  if (!fit) return std::nullopt;
-  MotionCheck check = checkOf(*fit);
-  check.yaw = check.pitch = check.roll = MotionCheck::Value{0, 1, 0, 0};
+  auto check = checkOf(p);
+  if (!check) return std::nullopt;
+  check->yaw = check->pitch = check->roll = MotionCheck::Value{0, 1, 0, 0};
   return check;
 }
 

@@ -1,4 +1,4 @@
-#include "libperception/doctor/DoctorReport.h"
+#include "libperception/doctor/Findings.h"
 
 #include <gtest/gtest.h>
 
@@ -46,7 +46,7 @@ void expectTold(const std::string& told, const std::string& text) {
   EXPECT_NE(told.find(text), std::string::npos) << "'" << text << "' is not in\n" << told;
 }
 
-TEST(DoctorReport, ATimeThatGoesBackIsAFaultAndOneLateScanANote) {
+TEST(Findings, ATimeThatGoesBackIsAFaultAndOneLateScanANote) {
   std::vector<SensorFrame> jump, late;
   for (const double t : {0.0, 0.1, 0.2, 5.0, 0.3, 0.4}) jump.push_back(scanAt("L", t));
   expectTold(toldOf(jump),
@@ -57,13 +57,13 @@ TEST(DoctorReport, ATimeThatGoesBackIsAFaultAndOneLateScanANote) {
   EXPECT_EQ(toldOf({scanAt("L", 0), scanAt("L", 0.1)}).find("goes back"), std::string::npos);
 }
 
-TEST(DoctorReport, ReturnsSecondsOutsideOfTheirScanAreAFault) {
+TEST(Findings, ReturnsSecondsOutsideOfTheirScanAreAFault) {
   expectTold(toldOf({scanAt("L", 0), scanAt("L", 0.1, 5), scanAt("L", 0.2, -3)}),
              "FAULT L: returns lie more than 1.05 s outside of 2 of 3 scans");
   EXPECT_EQ(toldOf({scanAt("L", 0, -0.05)}).find("outside"), std::string::npos);
 }
 
-TEST(DoctorReport, ASensorOfAnotherTimeThanAllOthersIsAFault) {
+TEST(Findings, ASensorOfAnotherTimeThanAllOthersIsAFault) {
   std::vector<SensorFrame> frames;
   for (const double t : {0.0, 0.1, 0.2}) {
     frames.push_back(scanAt("A", t));

@@ -1,4 +1,4 @@
-#include "libperception/doctor/ImageMotion.h"
+#include "libperception/doctor/motion/ImageMotion.h"
 
 #include <opencv2/calib3d.hpp>
 #include <opencv2/core/eigen.hpp>
@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "libperception/doctor/MotionFit.h"
+#include "libperception/core/math/Median.h"
 
 namespace perception {
 namespace {
