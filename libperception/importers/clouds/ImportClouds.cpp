@@ -63,8 +63,7 @@ std::string firstNumbers(const std::vector<std::string>& paths) {
 std::vector<float> numbersIn(const std::string& bytes, bool doubles) {
   const auto read = [&](auto zero) {
     std::vector<decltype(zero)> numbers(bytes.size() / sizeof(zero));
-    if (!numbers.empty())
-      std::memcpy(numbers.data(), bytes.data(), numbers.size() * sizeof(zero));
+    if (!numbers.empty()) std::memcpy(numbers.data(), bytes.data(), numbers.size() * sizeof(zero));
     return std::vector<float>(numbers.begin(), numbers.end());
   };
   return doubles ? read(0.0) : read(0.0F);
