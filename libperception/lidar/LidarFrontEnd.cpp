@@ -101,17 +101,17 @@ void gatherObstacles(const LidarCloud& cloud, LidarDetections& found) {
 void describeSolid(const SensorFrame& frame, const LidarCloud& cloud, const ObstacleParams& params,
                    const DirectionCells& cells, LidarDetections& found) {
   constexpr float kHardlyDoubted = 0.05f;  // of a return (assumed)
-  std::vector<char> doubted(found.height.size(), frame.causes.weather > 0);
-  for (std::size_t k = 0; k < found.phantom.size(); ++k)
-    if (found.phantom[k] > kHardlyDoubted) doubted[found.obstacles[k]] = 1;
-  const auto low = static_cast<float>(params.height_min),
-             high = static_cast<float>(params.height_max);
-  std::vector<std::uint32_t> slab;
-  for (std::uint32_t i = 0; i < found.height.size(); ++i) {
-    if (found.height[i] <= low || found.height[i] >= high) continue;
-    const bool trusted =
-        cloud.trust.empty() || cloud.trust[found.points.source[i]] >= 1 - kHardlyDoubted;
-    if (doubted[i] || !trusted) slab.push_back(i);
+  std::vector<std::uint32_t> slab = heightsBetween(
+      found.height, static_cast<float>(params.height_min), static_cast<float>(params.height_max));
+  if (frame.causes.weather <= 0) {
+    std::vector<char> doubted(found.height.size(), 0);
+    for (std::size_t k = 0; k < found.phantom.size(); ++k)
+      if (found.phantom[k] > kHardlyDoubted) doubted[found.obstacles[k]] = 1;
+    const auto sure = [&](std::uint32_t i) {
+      return !doubted[i] &&
+             (cloud.trust.empty() || cloud.trust[found.points.source[i]] >= 1 - kHardlyDoubted);
+    };
+    slab.erase(std::remove_if(slab.begin(), slab.end(), sure), slab.end());
   }
   const auto shares = solidShares(found.points, cells, slab);
   found.solid.assign(found.height.size(), PlacedReturns::kFewDirections);

@@ -103,9 +103,10 @@ void LogRun::writeExport(const Scene& scene) {
 void LogRun::read(const std::function<void(const Scene&)>& keep) {
   const auto take = [&](bool end) {
     while (const auto scene = pipeline_.next(end)) {
-      put(*scene);
+      events_.release([&] { put(*scene); });
       keep(*scene);
     }
+    if (pipeline_.isBehind()) events_.hold();
     putWeather();
     putLedger();
   };

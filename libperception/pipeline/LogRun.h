@@ -35,6 +35,8 @@ class LogRun {
   void watch(PipelineObserver& observer, EventLog::Listener events);
   /// The same for events alone.
   void listen(EventLog::Listener events) { events_.tell(std::move(events)); }
+  /// As Pipeline::letGridLag(), for a log that is not watched: listeners hear of events late.
+  void letGridLag() { pipeline_.letGridLag(); }
   /// Processes the log to its end; `keep` is called with each scene.
   void read(const std::function<void(const Scene&)>& keep);
   /// Returns warnings. Throws DataError when there is no scene, or when the log is damaged and

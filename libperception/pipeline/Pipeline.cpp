@@ -42,6 +42,10 @@ Pipeline::Pipeline(PipelineSetup setup, EventLog& events, RunTiming& timing)
   if (setup_.grid.enabled) safety_.emplace(setup_.grid, setup_.stop, setup_.weather.trust);
 }
 
+void Pipeline::letGridLag() {
+  grid_lags_ = safety_ && canRunBoth() && setup_.run.output_lag <= 0 && setup_.run.output_rate <= 0;
+}
+
 void Pipeline::add(const mrpt::obs::CObservation& observation) {
   const auto stamp = toStamp(observation.timestamp);
   if (stamp) addTime(*stamp);
@@ -131,6 +135,7 @@ void Pipeline::addFrame(const mrpt::obs::CObservation& observation) {
 }
 
 void Pipeline::finish() {
+  catchUp();
   watch_.finish();
   ledger_.finish();
   const auto lines = learned();
@@ -146,7 +151,7 @@ std::vector<std::string> Pipeline::learned() const {
 
 std::optional<Scene> Pipeline::next(bool flush) {
   while (ready_.empty() && processNext(flush)) continue;
-  if (ready_.empty() && flush) makeScenes(std::nullopt);
+  if (ready_.empty() && flush) catchUp(), makeScenes(std::nullopt);
   if (ready_.empty()) return std::nullopt;
   Scene scene = std::move(ready_.front());
   ready_.pop_front();
@@ -222,6 +227,7 @@ bool Pipeline::isOutput(Stamp stamp) {
 }
 
 void Pipeline::processFrame(std::size_t sensor, SensorFrame& frame) {
+  const Stamp stamp = frame.stamp;
   scan_maker_.addGround(sensor, frame);
   if (setup_.sensors[sensor].active) {
     health_.addFrame(sensor, frame, weather_.fog());
@@ -229,16 +235,23 @@ void Pipeline::processFrame(std::size_t sensor, SensorFrame& frame) {
     if (setup_.sensors[sensor].params.modality == Modality::kLidar)
       frame.causes.wakes = wakes_.at(frame.stamp);
     MeasurementScan scan = scan_maker_.measure(sensor, frame);
+    catchUp();
     const double share = conditions_.apply(sensor, scan, health_.seenShare(sensor));
     wakes_.apply(sensor, scan);
-    watch_.addFrame(sensor, frame.stamp, &scan);
+    watch_.addFrame(sensor, stamp, &scan);
     for (PipelineObserver* o : observers_) o->onFrame(frame), o->onScan(scan);
     const auto returns = std::exchange(scan.returns, nullptr);
-    runBoth([&] { filter(sensor, scan, share); }, [&] { addToGrid(frame, returns.get()); });
+    if (grid_lags_) {
+      const auto kept = std::make_shared<const SensorFrame>(std::move(frame));
+      grid_work_.add([this, kept, returns] { addToGrid(*kept, returns.get()); });
+      runAlone([&] { filter(sensor, scan, share); });
+    } else {
+      runBoth([&] { filter(sensor, scan, share); }, [&] { addToGrid(frame, returns.get()); });
+    }
   } else {
-    watch_.addFrame(sensor, frame.stamp, nullptr);
+    watch_.addFrame(sensor, stamp, nullptr);
   }
-  watch_.setSeen(sensor, frame.stamp);
+  watch_.setSeen(sensor, stamp);
 }
 
 void Pipeline::filter(std::size_t sensor, MeasurementScan& scan, double share) {
@@ -266,13 +279,34 @@ EgoState Pipeline::egoAt(Stamp stamp) {
 
 void Pipeline::addOutput(const EgoState& ego, std::int64_t frame) {
   OutputSchedule::Instant instant{ego, frame, {}};
-  if (safety_) {
-    const auto scope = timing_.stage("grid");
-    instant.path = safety_->pathAhead(ego);
+  if (grid_lags_) {
+    if (late_) catchUp();
+    late_ = std::move(instant);
+    grid_work_.add([this] { findPath(*late_); });
+  } else {
+    findPath(instant);
+    putOutput(std::move(instant));
   }
-  for (PipelineObserver* o : observers_) o->onPath(instant.path), o->onScene(ego, frame);
+}
+
+void Pipeline::findPath(OutputSchedule::Instant& instant) {
+  if (!safety_) return;
+  const auto scope = timing_.stage("grid");
+  instant.path = safety_->pathAhead(instant.ego);
+}
+
+void Pipeline::putOutput(OutputSchedule::Instant instant) {
+  for (PipelineObserver* o : observers_)
+    o->onPath(instant.path), o->onScene(instant.ego, instant.frame);
+  const Stamp stamp = instant.ego.stamp;
   outputs_.push(std::move(instant));
-  makeScenes(ego.stamp);
+  makeScenes(stamp);
+}
+
+/// Waits for the grid, and makes the scene that is late.
+void Pipeline::catchUp() {
+  grid_work_.wait();
+  if (late_) putOutput(*std::exchange(late_, std::nullopt));
 }
 
 /// Makes the scenes whose lag has passed; without `now` (end of log) all.
@@ -286,6 +320,7 @@ void Pipeline::makeScenes(std::optional<Stamp> now) {
 }
 
 std::set<std::uint64_t> Pipeline::livingObjects() {
+  // What a late scene will show is in the filter still.
   std::unordered_set<std::uint64_t> tracks;
   for (const auto& track : tracker_.mapHypothesis().tracks) tracks.insert(track->id);
   for (const auto& particle : tracker_.m_particles)
@@ -297,6 +332,7 @@ std::set<std::uint64_t> Pipeline::livingObjects() {
 }
 
 void Pipeline::restartTracks() {
+  catchUp();
   makeScenes(std::nullopt);
   tracker_.reset();
   health_.restart();

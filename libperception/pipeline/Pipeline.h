@@ -6,6 +6,7 @@
 #include <set>
 #include <vector>
 
+#include "libperception/filter/state/Parallel.h"
 #include "libperception/pipeline/PipelineSetup.h"
 #include "libperception/pipeline/ScanMaker.h"
 #include "libperception/pipeline/input/EgoTimeline.h"
@@ -53,6 +54,14 @@ class Pipeline {
   Pipeline(const Pipeline&) = delete;
   Pipeline& operator=(const Pipeline&) = delete;
 
+  /// Lets the grid of a scan and the way ahead be worked on while the next scan is prepared, where
+  /// there are two threads: of a log, whose scenes need not come at once. Each then comes when the
+  /// next scan is about to go into the filter, and is the same. grid() is not to be asked for until
+  /// the log has ended. No effect on scenes at a fixed rate or with a lag.
+  void letGridLag();
+  /// Whether a scene is due that did not come yet, since the grid lags.
+  bool isBehind() const { return late_.has_value(); }
+
   void add(const mrpt::obs::CObservation& observation);
   std::optional<Scene> next(bool flush = false);
   /// Reports events known at the end of the log: sensors without frames, labels without a section,
@@ -95,6 +104,9 @@ class Pipeline {
   void filter(std::size_t sensor, MeasurementScan& scan, double share);
   void addToGrid(const SensorFrame& frame, const PlacedReturns* returns);
   void addOutput(const EgoState& ego, std::int64_t frame);
+  void findPath(OutputSchedule::Instant& instant);
+  void putOutput(OutputSchedule::Instant instant);
+  void catchUp();
   void makeScenes(std::optional<Stamp> now);
   void restartTracks();
 
@@ -122,6 +134,9 @@ class Pipeline {
   std::optional<Stamp> first_stamp_;
   Stamp last_stamp_;
   std::vector<PipelineObserver*> observers_;
+  bool grid_lags_ = false;
+  std::optional<OutputSchedule::Instant> late_;  ///< waits for its path
+  WorkBehind grid_work_;                         ///< on safety_ and late_
 };
 
 }  // namespace perception

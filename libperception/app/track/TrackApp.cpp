@@ -259,6 +259,7 @@ void TrackApp::trackLog(const PipelineSetup& setup, const Shard& shard) {
     view->watch(run, tell_ros);
   else if (ros)
     run.listen(tell_ros);
+  if (!view && !ros && !liveIniOf(shard.log)) run.letGridLag();
   run.read([&](const Scene& scene) {
     if (view) view->put(scene, run);
     if (ros) ros->put(scene, run);

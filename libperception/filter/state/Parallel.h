@@ -3,8 +3,14 @@
 #include <tbb/parallel_for.h>
 #include <tbb/partitioner.h>
 #include <tbb/task_arena.h>
+#include <tbb/task_group.h>
 
 #include <cstddef>
+#include <deque>
+#include <exception>
+#include <functional>
+#include <mutex>
+#include <utility>
 
 #ifdef __SANITIZE_THREAD__
 extern "C" void __tsan_acquire(void* address);
@@ -65,5 +71,65 @@ void runBoth(const First& f, const Second& g) {
         tbb::simple_partitioner());
   });
 }
+
+/// Whether there is a second thread.
+inline bool canRunBoth() {
+  return tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism) > 1;
+}
+
+/// f(), which does none of the work of a WorkBehind while it waits for loops of its own.
+template <class Function>
+void runAlone(const Function& f) {
+  tbb::this_task_arena::isolate(f);
+}
+
+/// Work that is done in the order in which it is given, beside the thread that gives it, where
+/// there are two threads. For one giver.
+class WorkBehind {
+ public:
+  WorkBehind() = default;
+  WorkBehind(const WorkBehind&) = delete;
+  WorkBehind& operator=(const WorkBehind&) = delete;
+  ~WorkBehind() { group_.wait(); }
+
+  void add(std::function<void()> work) {
+    const std::lock_guard lock(mutex_);
+    waiting_.push_back(std::move(work));
+    if (!std::exchange(works_, true)) group_.run([this] { workAll(); });
+  }
+  /// Returns when all is done. Throws what the first work that failed threw; those after it are
+  /// left out.
+  void wait() {
+    group_.wait();
+    const std::lock_guard lock(mutex_);
+    if (fault_) std::rethrow_exception(std::exchange(fault_, nullptr));
+  }
+
+ private:
+  void workAll() {
+    order_.enter();
+    for (std::unique_lock lock(mutex_);; lock.lock()) {
+      if (fault_) waiting_.clear();
+      works_ = !waiting_.empty();
+      if (!works_) return;
+      const auto work = std::move(waiting_.front());
+      waiting_.pop_front();
+      lock.unlock();
+      try {
+        work();
+      } catch (...) {
+        const std::lock_guard faulty(mutex_);
+        fault_ = std::current_exception();
+      }
+    }
+  }
+
+  std::mutex mutex_;
+  std::deque<std::function<void()>> waiting_;
+  bool works_ = false;
+  std::exception_ptr fault_;
+  LoopOrder order_;  // of the members before it and of workAll()
+  tbb::task_group group_;
+};
 
 }  // namespace perception

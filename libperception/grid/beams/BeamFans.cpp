@@ -91,9 +91,10 @@ PERCEPTION_LANES void crossCells(const BeamStretch& beam, float along, float sen
   }
 }
 
-// Cells of the last group beyond the window's end hold no beam and mark nothing.
+// Cells of the last group beyond the window's end hold no beam and mark nothing. Leaves `gathered`
+// empty for the next fan.
 template <class Float, class Mask>
-PERCEPTION_LANES void markGathered(const Fan& fan, const float* guides, const Mask* gathered,
+PERCEPTION_LANES void markGathered(const Fan& fan, const float* guides, Mask* gathered,
                                    Mask* crossed) {
   constexpr int kCount = LanesOf<Float>::kCount;
   const std::ptrdiff_t side = fan.side;
@@ -107,23 +108,21 @@ PERCEPTION_LANES void markGathered(const Fan& fan, const float* guides, const Ma
     const auto row = truncated(smaller(larger(middle, lowest), highest)) - kBefore;
     std::int32_t column[kCount];
     store8(fan.column + along * fan.step + row * fan.side, column);
-    const Mask* rows = gathered + kRows * i;
+    Mask* const rows = gathered + kRows * i;
     for (int k = 0; k < kCount; ++k) {
       Mask* const first = crossed + column[k];
       first[0] |= rows[k];
       first[side] |= rows[k + kCount];
       first[2 * side] |= rows[k + 2 * kCount];
     }
+    std::memset(rows, 0, kRows * kCount * sizeof(Mask));
   }
 }
 
 template <class Float, class Mask>
 PERCEPTION_LANES void crossFan(const Fan& fan, const BeamStretch* beams, const std::uint16_t* order,
                                std::size_t count, float* guides, Mask* gathered, Mask* crossed) {
-  constexpr int kCount = LanesOf<Float>::kCount;
   layOut<Float>(fan, guides);
-  const auto groups = static_cast<std::size_t>((fan.last - fan.first) / kCount + 1);
-  std::memset(gathered + kRows * fan.first, 0, groups * kRows * kCount * sizeof(Mask));
   const float along = fan.along, height = fan.height;
   for (std::size_t k = 0; k < count; ++k) {
     const BeamStretch beam = beams[order[k]];

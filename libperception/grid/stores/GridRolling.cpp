@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
+#include <memory>
+#include <new>
 #include <utility>
 
 #include "libperception/grid/beams/WindowMarks.h"
@@ -16,6 +19,30 @@ constexpr double kForgottenSpace = 0.05;  // [log-odds] below it unknown: roundi
 
 std::int64_t modulo(std::int64_t a, std::int64_t n) { return ((a % n) + n) % n; }
 
+/// Numbers that are 0. Memory of that size comes from the system page by page when it is first
+/// touched, so that a window of which a part is seen costs this part.
+class ZeroedValues {
+ public:
+  explicit ZeroedValues(std::size_t size)
+      : size_(size), values_(static_cast<std::int16_t*>(std::calloc(size, sizeof(std::int16_t)))) {
+    if (!values_) throw std::bad_alloc();
+  }
+  std::int16_t* data() { return values_.get(); }
+  const std::int16_t* data() const { return values_.get(); }
+  std::int16_t* begin() { return data(); }
+  std::int16_t* end() { return data() + size_; }
+  std::size_t size() const { return size_; }
+  std::int16_t& operator[](std::size_t i) { return values_[i]; }
+  std::int16_t operator[](std::size_t i) const { return values_[i]; }
+
+ private:
+  std::size_t size_;
+  struct Free {
+    void operator()(std::int16_t* values) const { std::free(values); }
+  };
+  std::unique_ptr<std::int16_t[], Free> values_;
+};
+
 /// The index of a cell in the array is its world index modulo the window's size, so no cell is
 /// moved with the vehicle. Columns store the time of their last change and decay when updated.
 template <class Mask>
@@ -27,7 +54,7 @@ class GridRolling final : public SafetyGrid {
         layers_(windowLayers(params)),
         square_(cells_),
         marks_(params, static_cast<int>(layers_)),
-        values_(static_cast<std::size_t>(cells_ * cells_ * layers_), 0),
+        values_(static_cast<std::size_t>(cells_ * cells_ * layers_)),
         was_hit_(static_cast<std::size_t>(cells_ * cells_), 0),
         ages_(static_cast<std::size_t>(cells_ * cells_), params.tau),
         column_(params.hit, params.miss, params.low, params.high) {}
@@ -70,6 +97,7 @@ class GridRolling final : public SafetyGrid {
   }
 
   void restore(const std::vector<GridCell>& cells) override {
+    empty_ = false;
     for (const GridCell& cell : cells) {
       const CellIndex index = {indexOf(cell.center.x()), indexOf(cell.center.y()),
                                indexOf(cell.center.z())};
@@ -85,7 +113,7 @@ class GridRolling final : public SafetyGrid {
   }
 
   std::size_t memoryBytes() const override {
-    return values_.capacity() * sizeof(std::int16_t) + was_hit_.capacity() + ages_.memoryBytes() +
+    return values_.size() * sizeof(std::int16_t) + was_hit_.capacity() + ages_.memoryBytes() +
            marks_.memoryBytes();
   }
 
@@ -157,8 +185,10 @@ class GridRolling final : public SafetyGrid {
     ages_.advance(passed);
     if (!started_ || std::abs(first.x - first_.x) >= cells_ ||
         std::abs(first.y - first_.y) >= cells_ || std::abs(first.z - first_.z) >= layers_) {
-      std::fill(values_.begin(), values_.end(), std::int16_t{0});
-      std::fill(was_hit_.begin(), was_hit_.end(), std::uint8_t{0});
+      if (!empty_) {
+        std::fill(values_.begin(), values_.end(), std::int16_t{0});
+        std::fill(was_hit_.begin(), was_hit_.end(), std::uint8_t{0});
+      }
       ages_.touchAll();
     } else {
       square_.forEntering(first_, first, [this](std::size_t slot, std::size_t count) {
@@ -170,6 +200,7 @@ class GridRolling final : public SafetyGrid {
     }
     first_ = first;
     started_ = true;
+    empty_ = false;
     ages_.refresh([this](std::size_t slot) {
       update(slot, 0, 0);
       was_hit_[slot] = was_hit_[slot] != 0 && mayReach(slot, leastOccupied());
@@ -225,7 +256,7 @@ class GridRolling final : public SafetyGrid {
   std::int64_t cells_, layers_;
   RollingSquare square_;
   WindowMarks<Mask> marks_;
-  std::vector<std::int16_t> values_;  // [slot][layer], log-odds in units, at the time in ages_
+  ZeroedValues values_;  // [slot][layer], log-odds in units, at the time in ages_
   /// Of each column: it was hit since it entered the window or was last refreshed below the least
   /// value of an occupied cell. Others hold no occupied cell.
   std::vector<std::uint8_t> was_hit_;
@@ -233,8 +264,9 @@ class GridRolling final : public SafetyGrid {
   LogOddsColumn column_;
   bool judged_ = false;  // the hits of the scan have weights
   bool started_ = false;
-  Stamp now_;        // of the last scan
-  CellIndex first_;  // lowest cell of the window
+  bool empty_ = true;  // no value was ever set
+  Stamp now_;          // of the last scan
+  CellIndex first_;    // lowest cell of the window
 };
 
 }  // namespace

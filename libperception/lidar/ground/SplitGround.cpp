@@ -72,4 +72,20 @@ void splitGround(const LidarCloud& cloud, const EgoPoints& points,
   obstacles.resize(found);
 }
 
+std::vector<std::uint32_t> heightsBetween(const std::vector<float>& heights, float low,
+                                          float high) {
+  std::vector<std::uint32_t> between;
+  std::array<std::int32_t, kSplitBlock> marks;
+  std::array<std::uint32_t, kSplitBlock + kPackSlack> places;
+  for (std::size_t first = 0; first < heights.size(); first += kSplitBlock) {
+    const std::size_t count = std::min(kSplitBlock, heights.size() - first);
+    markObstacles(&heights[first], count, low, high, marks.data());
+    const std::size_t found =
+        packPlaces(marks.data(), count, static_cast<std::uint32_t>(first), places.data());
+    between.insert(between.end(), places.begin(),
+                   places.begin() + static_cast<std::ptrdiff_t>(found));
+  }
+  return between;
+}
+
 }  // namespace perception

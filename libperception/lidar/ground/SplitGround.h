@@ -22,4 +22,7 @@ void splitGround(const LidarCloud& cloud, const EgoPoints& points,
                  const std::vector<float>& heights, const SplitRules& rules,
                  std::vector<std::uint8_t>& ground, std::vector<std::uint32_t>& obstacles);
 
+/// Indices of the heights between `low` and `high` [m], ascending.
+std::vector<std::uint32_t> heightsBetween(const std::vector<float>& heights, float low, float high);
+
 }  // namespace perception

@@ -8,6 +8,7 @@
 #include <type_traits>
 
 #include "libperception/measurement/frames/PlacedReturns.h"
+#include "libperception/simd/Dispatch.h"
 #include "libperception/simd/Vector8.h"
 
 namespace perception {
@@ -42,25 +43,26 @@ struct Shell {
 
 /// Of the cells up to `around` rows and columns away; the place is not at the border.
 template <int around>
-CellsAbout cellsWithin(const DirectionCells& cells, const DirectionCells::Place& place,
-                       const Shell& shell) {
+PERCEPTION_LANES CellsAbout cellsWithin(const DirectionCells& cells,
+                                        const DirectionCells::Place& place, const Shell& shell) {
   using Float = std::conditional_t<around == 1, Float4, Float8>;
+  constexpr int kPassed = 256;  // told and passed in one number
+  // Cells without a return, whose range is 0, do not tell.
+  const float least = std::max(shell.least, std::numeric_limits<float>::denorm_min());
   IntsOf<Float> told{}, passed{};  // numbers below zero
-  for (int row = place.row - around; row <= place.row + around; ++row) {
-    const auto farthest = load<Float>(cells.farthestFrom(place.column - around, row));
-    const IntsOf<Float> tells = (farthest != 0.0f) & (farthest >= shell.least);
-    told += tells, passed += tells & (farthest > shell.behind);
+  for (int row = -around; row <= around; ++row) {
+    const auto farthest = load<Float>(cells.farthestFrom(place.column - around, place.row + row));
+    told += farthest >= least, passed += farthest > shell.behind;
   }
-  int all = 0, gone = 0;
-  for (int lane = 0; lane <= 2 * around; ++lane) all -= told[lane], gone -= passed[lane];
-  return {all - gone, gone};
+  const IntsOf<Float> both = told + kPassed * passed;
+  int sum = 0;
+  for (int lane = 0; lane <= 2 * around; ++lane) sum -= both[lane];
+  return {sum % kPassed - sum / kPassed, sum / kPassed};
 }
 
-CellsAbout cellsAbout(const DirectionCells& cells, const DirectionCells::Place& place,
-                      const Shell& shell, int around) {
-  if (DirectionCells::isWithin(place)) {
-    return around == 1 ? cellsWithin<1>(cells, place, shell) : cellsWithin<2>(cells, place, shell);
-  }
+/// The same at the border.
+CellsAbout cellsAtBorder(const DirectionCells& cells, const DirectionCells::Place& place,
+                         const Shell& shell, int around) {
   CellsAbout about;
   for (int row = place.row - around; row <= place.row + around; ++row) {
     for (int column = place.column - around; column <= place.column + around; ++column) {
@@ -72,25 +74,64 @@ CellsAbout cellsAbout(const DirectionCells& cells, const DirectionCells::Place& 
   return about;
 }
 
-/// Calls `use` with the number of each of the points, its place and its range [m].
+template <int around>
+PERCEPTION_LANES CellsAbout cellsAbout(const DirectionCells& cells,
+                                       const DirectionCells::Place& place, const Shell& shell) {
+  return DirectionCells::isWithin(place) ? cellsWithin<around>(cells, place, shell)
+                                         : cellsAtBorder(cells, place, shell, around);
+}
+
+/// Some returns: their directions and ranges [m].
+struct PlacedBlock {
+  static constexpr std::size_t kSize = 256;  // that fit in the L1 cache
+  std::size_t count = 0;
+  std::array<DirectionCells::Place, kSize> place;
+  std::array<float, kSize> range;
+};
+
+/// solidShares() of a block.
+PERCEPTION_LANES void sharesIn(const PlacedBlock& block, const DirectionCells& cells,
+                               float* shares) {
+  for (std::size_t k = 0; k < block.count; ++k) {
+    const float range = block.range[k];
+    const bool among = range < PlacedReturns::kFlakesWithin;
+    const float bend = among ? kSmooth : kBend, grazing = among ? kSmoothGrazing : kGrazing;
+    const Shell shell{range - bend - grazing * range, range + bend};
+    const CellsAbout about = among ? cellsAbout<2>(cells, block.place[k], shell)
+                                   : cellsAbout<1>(cells, block.place[k], shell);
+    const int told = about.solid + about.passed;
+    if (told >= kLeastInRow) shares[k] = static_cast<float>(about.solid) / static_cast<float>(told);
+  }
+}
+
+PERCEPTION_TARGET("default")
+void sharesOf(const PlacedBlock& block, const DirectionCells& cells, float* shares) {
+  sharesIn(block, cells, shares);
+}
+#if PERCEPTION_HAS_WIDER
+PERCEPTION_TARGET("avx2")
+void sharesOf(const PlacedBlock& block, const DirectionCells& cells, float* shares) {
+  sharesIn(block, cells, shares);
+}
+#endif
+
+/// Calls `use` with the number of the first of a block of the points, and with the block.
 template <class Use>
-void forPlaces(const EgoPoints& all, const std::vector<std::uint32_t>& points, const Use& use) {
+void forBlocks(const EgoPoints& all, const std::vector<std::uint32_t>& points, const Use& use) {
   const auto sx = static_cast<float>(all.sensor.x()), sy = static_cast<float>(all.sensor.y()),
              sz = static_cast<float>(all.sensor.z());
-  constexpr std::size_t kBlock = 256;  // points that fit in the L1 cache
-  std::array<float, kBlock> dx, dy, dz;
-  std::array<DirectionCells::Place, kBlock> place;
-  for (std::size_t first = 0; first < points.size(); first += kBlock) {
-    const std::size_t count = std::min(kBlock, points.size() - first);
-    for (std::size_t k = 0; k < count; ++k) {
+  std::array<float, PlacedBlock::kSize> dx, dy, dz;
+  PlacedBlock block;
+  for (std::size_t first = 0; first < points.size(); first += block.count) {
+    block.count = std::min(PlacedBlock::kSize, points.size() - first);
+    for (std::size_t k = 0; k < block.count; ++k) {
       const std::uint32_t i = points[first + k];
       dx[k] = all.x[i] - sx, dy[k] = all.y[i] - sy, dz[k] = all.z[i] - sz;
     }
-    DirectionCells::placeAll(dx.data(), dy.data(), dz.data(), count, place.data());
-    for (std::size_t k = 0; k < count; ++k) {
-      const float range = std::sqrt(dx[k] * dx[k] + dy[k] * dy[k] + dz[k] * dz[k]);
-      use(static_cast<std::uint32_t>(first + k), place[k], range);
-    }
+    DirectionCells::placeAll(dx.data(), dy.data(), dz.data(), block.count, block.place.data());
+    for (std::size_t k = 0; k < block.count; ++k)
+      block.range[k] = std::sqrt(dx[k] * dx[k] + dy[k] * dy[k] + dz[k] * dz[k]);
+    use(first, block);
   }
 }
 
@@ -99,13 +140,8 @@ void forPlaces(const EgoPoints& all, const std::vector<std::uint32_t>& points, c
 std::vector<float> solidShares(const EgoPoints& all, const DirectionCells& cells,
                                const std::vector<std::uint32_t>& points) {
   std::vector<float> shares(points.size(), PlacedReturns::kFewDirections);
-  forPlaces(all, points, [&](std::uint32_t k, const DirectionCells::Place& place, float range) {
-    const bool among = range < PlacedReturns::kFlakesWithin;
-    const float bend = among ? kSmooth : kBend, grazing = among ? kSmoothGrazing : kGrazing;
-    const Shell shell{range - bend - grazing * range, range + bend};
-    const CellsAbout about = cellsAbout(cells, place, shell, among ? 2 : 1);
-    const int told = about.solid + about.passed;
-    if (told >= kLeastInRow) shares[k] = static_cast<float>(about.solid) / static_cast<float>(told);
+  forBlocks(all, points, [&](std::size_t first, const PlacedBlock& block) {
+    sharesOf(block, cells, &shares[first]);
   });
   return shares;
 }
@@ -114,9 +150,12 @@ std::vector<std::uint32_t> surfaceReturns(const EgoPoints& all, const DirectionC
                                           const std::vector<std::uint32_t>& points) {
   std::vector<std::uint32_t> kept;
   kept.reserve(points.size());
-  forPlaces(all, points, [&](std::uint32_t k, const DirectionCells::Place& place, float range) {
-    const Shell shell{-std::numeric_limits<float>::infinity(), range + kBend};
-    if (!cellsAbout(cells, place, shell, 1).loose()) kept.push_back(k);
+  forBlocks(all, points, [&](std::size_t first, const PlacedBlock& block) {
+    for (std::size_t k = 0; k < block.count; ++k) {
+      const Shell shell{-std::numeric_limits<float>::infinity(), block.range[k] + kBend};
+      if (!cellsAbout<1>(cells, block.place[k], shell).loose())
+        kept.push_back(static_cast<std::uint32_t>(first + k));
+    }
   });
   const auto count = static_cast<double>(points.size());
   if (count - static_cast<double>(kept.size()) <= kMostLoose * count) return kept;

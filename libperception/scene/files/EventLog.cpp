@@ -26,15 +26,25 @@ void EventLog::add(std::optional<Stamp> stamp, const std::string& kind, const st
         std::find(first_warnings_.begin(), first_warnings_.end(), message) == first_warnings_.end())
       first_warnings_.push_back(message);
   }
-  const std::uint64_t count = ++counts_[kind];
+  ++counts_[kind];
   if (fields.is_null()) fields = Fields::object();
   Event event{stamp, kind, message, std::move(fields), severity};
-  if (listener_) listener_(stamp, contentOf(event));
+  holds_ ? held_.push_back(std::move(event)) : put(std::move(event));
+}
+
+void EventLog::put(Event event) {
+  if (listener_) listener_(event.stamp, contentOf(event));
   if (file_) {
     file_->write(lineOf(event, first_stamp_));
-  } else if (count <= kept_per_kind_) {
+  } else if (++stored_[event.kind] <= kept_per_kind_) {
     events_.push_back(std::move(event));
   }
+}
+
+void EventLog::release(const std::function<void()>& late) {
+  holds_ = false;
+  late();
+  for (Event& event : std::exchange(held_, {})) put(std::move(event));
 }
 
 void EventLog::warn(std::optional<Stamp> stamp, const std::string& kind, const std::string& message,

@@ -52,7 +52,7 @@ inline constexpr char kTrackLost[] = "track_lost";  ///< left the scene for good
 ///   "message": "...", "fields": {}}
 /// t [s] since the log's first stamp, stamp [s] since 1970 as text (exact); both null for an event
 /// without a stamp. Lines are in the order of add(), which is called from one thread in the order
-/// of the log.
+/// of the log, but for hold().
 class EventLog {
  public:
   using Fields = nlohmann::ordered_json;
@@ -72,6 +72,11 @@ class EventLog {
   /// without t and stamp.
   using Listener = std::function<void(std::optional<Stamp>, const nlohmann::ordered_json&)>;
   void tell(Listener listener) { listener_ = std::move(listener); }
+
+  /// Lets the events from now on wait for release(), for what comes before them is late.
+  void hold() { holds_ = true; }
+  /// Calls `late`, whose events come first, and then writes those that wait. The next do not wait.
+  void release(const std::function<void()>& late);
 
   /// Number of events by kind, including those not stored.
   const std::map<std::string, std::uint64_t>& counts() const { return counts_; }
@@ -96,14 +101,18 @@ class EventLog {
     Fields fields;
     Severity severity;
   };
+  void put(Event event);
   static nlohmann::ordered_json contentOf(const Event& event);
   static std::string lineOf(const Event& event, Stamp first_stamp);
 
   std::size_t kept_per_kind_;
   std::vector<Event> events_;
+  bool holds_ = false;
+  std::vector<Event> held_;
   std::optional<OutputFile> file_;
   Stamp first_stamp_;  ///< of the file
   std::map<std::string, std::uint64_t> counts_;
+  std::map<std::string, std::uint64_t> stored_;  ///< or omitted, without a file; by kind
   std::uint64_t warnings_ = 0;
   std::vector<std::string> first_warnings_;
   Listener listener_;

@@ -47,6 +47,16 @@ TEST(TrackApp, AGapOfADayAWeekOrAYearIsOneEventAndCostsNoTime) {
   }
 }
 
+TEST(TrackApp, TwoThreadsGiveTheBytesOfOne) {
+  for (const auto& log : {demoStart(4), withGap(86400), withGap(5)}) {
+    Tracking one, two;
+    ASSERT_EQ(one.track(log, {"--threads", "1"}).code, 0) << one.ended.err;
+    ASSERT_EQ(two.track(log, {"--threads", "2"}).code, 0) << two.ended.err;
+    for (const char* file : {"tracks.csv", "scenes.csv", "events.jsonl", "innovations.csv"})
+      EXPECT_EQ(contentOf(one.dir + "/" + file), contentOf(two.dir + "/" + file)) << file;
+  }
+}
+
 TEST(TrackApp, NoObjectOutlivesAGapOfADay) {
   Tracking t;
   ASSERT_EQ(t.track(withGap(86400)).code, 0) << t.ended.err;

@@ -2,7 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <atomic>
+#include <numeric>
 #include <stdexcept>
+#include <thread>
+#include <vector>
 
 namespace perception {
 namespace {
@@ -22,6 +26,50 @@ TEST(RunBoth, AnExceptionOfEitherReachesTheCaller) {
   const auto nothing = [] {};
   EXPECT_THROW(runBoth(fails, nothing), std::runtime_error);
   EXPECT_THROW(runBoth(nothing, fails), std::runtime_error);
+}
+
+TEST(WorkBehind, IsDoneInTheOrderInWhichItIsGiven) {
+  for (const std::size_t threads : {1, 2}) {
+    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
+    EXPECT_EQ(canRunBoth(), threads == 2);
+    std::vector<int> done, wanted(1000);
+    std::iota(wanted.begin(), wanted.end(), 0);
+    WorkBehind work;
+    for (const int k : wanted) {
+      work.add([&done, k] { done.push_back(k); });
+      if (k % 100 != 99) continue;
+      work.wait();
+      EXPECT_EQ(done.size(), static_cast<std::size_t>(k) + 1);
+    }
+    EXPECT_EQ(done, wanted);
+  }
+}
+
+TEST(WorkBehind, IsNotDoneByALoopThatRunsAlone) {
+  const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, 2);
+  const auto giver = std::this_thread::get_id();
+  WorkBehind work;
+  for (int k = 0; k < 50; ++k) {
+    bool alone = true;
+    std::atomic<bool> taken = false;
+    work.add([&] { taken = std::this_thread::get_id() == giver; });
+    runAlone([&] { parallelFor(100, [](std::size_t) {}), alone = !taken; });
+    EXPECT_TRUE(alone);
+    work.wait();
+  }
+}
+
+TEST(WorkBehind, ThrowsWhatTheFirstThrewAndLeavesOutTheRest) {
+  int done = 0;
+  WorkBehind work;
+  for (int k = 0; k < 2; ++k) {
+    work.add([&] { ++done; });
+    work.add([] { throw std::runtime_error("full"); });
+    EXPECT_THROW(work.wait(), std::runtime_error);
+    work.wait();
+    EXPECT_EQ(done, k + 1);
+  }
+  work.add([&] { ++done; });  // done before it goes
 }
 
 }  // namespace

@@ -47,6 +47,23 @@ TEST(EventLog, KeepsTheFirstWarningsAlsoWhenTheyAreWrittenAsTheyCome) {
   log.close();
 }
 
+TEST(EventLog, EventsThatAreHeldComeAfterTheLateOnes) {
+  EventLog log, wanted;
+  std::vector<std::string> told;
+  log.tell([&](std::optional<Stamp>, const auto& event) { told.push_back(event.at("message")); });
+  const auto add = [](EventLog& to, const char* message) { to.add(kFirstStamp, "x", message); };
+  for (const char* message : {"one", "two", "three", "four"}) add(wanted, message);
+  add(log, "one");
+  log.hold();
+  add(log, "three");
+  EXPECT_EQ(told, (std::vector<std::string>{"one"}));
+  EXPECT_EQ(log.counts().at("x"), 2U) << "counted at once";
+  log.release([&] { add(log, "two"); });
+  add(log, "four");
+  EXPECT_EQ(told, (std::vector<std::string>{"one", "two", "three", "four"}));
+  EXPECT_EQ(log.text(kFirstStamp), wanted.text(kFirstStamp));
+}
+
 TEST(EventLog, CountsByKindAndWarnings) {
   EventLog log;
   log.add(kFirstStamp, event_kind::kTrackBorn, "");
