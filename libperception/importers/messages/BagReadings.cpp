@@ -96,10 +96,25 @@ BagObservation observeFixByFields(const BagMessage& m, double shift, ros::Header
   const double longitude = firstNumber(value, {"lon", "longitude"});
   const double height = firstNumber(value, {"height", "hgt", "altitude"});
   const double undulation = value.number("undulation");
+  const double altitude = height + (std::isfinite(undulation) ? undulation : 0);
   if (!std::isfinite(latitude + longitude + height))
     throw std::runtime_error("no latitude, longitude and height in it");
-  return gpsObservation({header.stamp + shift, latitude, longitude,
-                         height + (std::isfinite(undulation) ? undulation : 0)});
+  const NcomState moving{latitude,
+                         longitude,
+                         altitude,
+                         value.number("north_velocity"),
+                         value.number("east_velocity"),
+                         -value.number("up_velocity"),
+                         value.number("azimuth"),
+                         value.number("pitch"),
+                         value.number("roll")};
+  constexpr double kSolutionGood = 3;
+  const bool aligned =
+      value.text("status") == "INS_SOLUTION_GOOD" || value.number("status.status") == kSolutionGood;
+  if (aligned && std::isfinite(moving.north + moving.east + moving.down + moving.heading +
+                               moving.pitch + moving.roll))
+    return ncomObservation(header.stamp + shift, moving);
+  return gpsObservation({header.stamp + shift, latitude, longitude, altitude});
 }
 
 BagObservation observeNcom(const BagMessage& m, double shift, ros::Header& header) {

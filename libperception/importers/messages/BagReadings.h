@@ -14,8 +14,8 @@ BagObservation observeFix(const BagMessage&, double shift, ros::Header&);
 /// sensor_msgs/Imu; absent parts (a covariance that begins with -1) stay absent.
 BagObservation observeImu(const BagMessage&, double shift, ros::Header&);
 /// Place by latitude, longitude and height, of receivers' own messages (novatel_gps_msgs,
-/// novatel_oem7_msgs): lat or latitude, lon or longitude, height or hgt with undulation. Null: no
-/// solution.
+/// novatel_oem7_msgs): lat or latitude, lon or longitude, height or hgt with undulation; of an
+/// INSPVA that is aligned also velocity and attitude. Null: no solution.
 BagObservation observeFixByFields(const BagMessage&, double shift, ros::Header&);
 /// oxts_msgs/Ncom: a packet (Ncom.h) in the message's only list of bytes. Null: not locked.
 BagObservation observeNcom(const BagMessage&, double shift, ros::Header&);

@@ -9,9 +9,9 @@
 
 namespace perception {
 
-/// What an inertial navigation system of OxTS says in one packet of its NCOM format (72 bytes,
-/// little-endian). Source: the maker's manual of the format, written down without it at hand and
-/// not tried on a recording.
+/// What an inertial navigation system says. One of OxTS says it in a packet of its NCOM format (72
+/// bytes, little-endian). Source: the maker's manual of the format, written down without it at hand
+/// and not tried on a recording.
 struct NcomState {
   double latitude = 0, longitude = 0;    ///< [deg] WGS 84
   double altitude = 0;                   ///< [m] above the ellipsoid

@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <cstring>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -69,8 +70,8 @@ TEST(Ncom, ASystemThatIsNotLockedSaysNoPlaceAndADamagedPacketIsRefused) {
 
 class NcomInRecording : public test::ImportRun {};
 
-/// A message of CDR: header, then the packet; no definition travels with it.
-std::string ncomMessage(std::int64_t stamp, const std::string& packet) {
+/// A message of CDR: header.
+std::string insHeader(std::int64_t stamp) {
   std::string bytes("\0\1\0\0", 4);
   const auto put = [&](std::uint64_t value) {
     bytes.append(4, '\0');
@@ -79,9 +80,18 @@ std::string ncomMessage(std::int64_t stamp, const std::string& packet) {
   put(static_cast<std::uint64_t>(stamp / 1'000'000'000));
   put(static_cast<std::uint64_t>(stamp % 1'000'000'000));
   put(4);
-  bytes += std::string("ins\0", 4);
-  put(packet.size());
-  return bytes + packet;
+  return bytes + std::string("ins\0", 4);
+}
+
+std::string insText(const std::string& text) {
+  std::string length(4, '\0');
+  putLittle(length, 0, text.size(), 4);
+  return length + text;
+}
+
+/// Header, then the packet; no definition travels with it.
+std::string ncomMessage(std::int64_t stamp, const std::string& packet) {
+  return insHeader(stamp) + insText(packet);
 }
 
 TEST_F(NcomInRecording, PacketsOfOxtsBecomeReadingsOfSatellites) {
@@ -102,6 +112,43 @@ TEST_F(NcomInRecording, PacketsOfOxtsBecomeReadingsOfSatellites) {
     if (gps != nullptr && gnssFix(*gps, GnssParams())) ++fixes;
   }
   EXPECT_EQ(fixes, 4);
+}
+
+TEST_F(NcomInRecording, AnInspvaThatIsAlignedSaysVelocityAndHeadingToo) {
+  McapWriter writer(file("drive.mcap"), "ros2");
+  const auto ins = writer.addChannel(
+      "/inspva", "cdr",
+      {"novatel_gps_msgs/msg/Inspva", "ros2msg",
+       "std_msgs/Header header\nfloat64 latitude\nfloat64 longitude\nfloat64 height\n"
+       "float64 north_velocity\nfloat64 east_velocity\nfloat64 up_velocity\nfloat64 roll\n"
+       "float64 pitch\nfloat64 azimuth\nstring status\n"});
+  const auto scan = writer.addChannel("/radar", "cdr", {"radar_msgs/msg/RadarScan", "ros2msg", ""});
+  for (int k = 0; k < 5; ++k) {
+    const std::int64_t stamp = kNcomBegin + k * 100'000'000;
+    std::string bytes = insHeader(stamp);
+    for (const double value : {49.0, 8.4, 110.0, -7.0, 7.0, 0.1, 0.5, -1.0, 135.0})
+      bytes.append(reinterpret_cast<const char*>(&value), sizeof value);
+    bytes += insText(std::string(k == 2 ? "INS_ALIGNING" : "INS_SOLUTION_GOOD") + '\0');
+    writer.write(ins, Stamp{stamp}, bytes);
+    writer.write(scan, Stamp{stamp}, ncomMessage(stamp, ""));
+  }
+  writer.close();
+  ASSERT_EQ(import("bag", {"--bag", file("drive.mcap")}), 3) << error_;
+  int places = 0, headings = 0;
+  for (const auto& o : readLog()) {
+    const auto* const gps = dynamic_cast<const mrpt::obs::CObservationGPS*>(o.get());
+    const auto fix = gps == nullptr ? std::nullopt : gnssFix(*gps, GnssParams());
+    if (!fix) continue;
+    ++places;
+    EXPECT_NEAR(fix->place.latitude, 49, 1e-9);
+    if (!fix->yaw) continue;
+    ++headings;
+    EXPECT_NEAR(*fix->yaw, radians(-45), 1e-9);
+    EXPECT_NEAR(fix->velocity.x(), 7, 1e-5);
+    EXPECT_NEAR(fix->velocity.y(), -7, 1e-5);
+  }
+  EXPECT_EQ(places, 5);
+  EXPECT_EQ(headings, 4);
 }
 
 }  // namespace
