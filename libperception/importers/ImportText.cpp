@@ -243,8 +243,15 @@ std::vector<StampedPose> readTumPoses(const std::string& path) {
 std::optional<Stamp> stampOfSeconds(std::string_view text) {
   const std::size_t dot = std::min(text.find('.'), text.size());
   std::int64_t seconds = 0, fraction = 0;
-  if (!parseWhole(text.substr(0, dot), seconds) || seconds < 0 || seconds > 9'000'000'000)
-    return {};
+  if (!parseWhole(text.substr(0, dot), seconds) || seconds < 0) return {};
+  constexpr std::int64_t kMilliseconds = 100'000'000'000;  // in seconds: 5000 years from now
+  if (dot == text.size() && seconds >= kMilliseconds) {
+    const std::int64_t unit = seconds >= kMilliseconds * 1'000'000 ? 1       // [ns]
+                              : seconds >= kMilliseconds * 1000    ? 1000    //
+                                                                   : 1000'000;  //
+    return Stamp{seconds * unit};
+  }
+  if (seconds > 9'000'000'000) return {};
   std::string digits(dot < text.size() ? text.substr(dot + 1, 9) : std::string_view());
   digits.resize(9, '0');
   if (!std::all_of(digits.begin(), digits.end(), [](char c) { return c >= '0' && c <= '9'; }) ||
@@ -262,7 +269,28 @@ std::optional<Stamp> stampOfDay(std::string_view text) {
   return Stamp{daysSince1970(year, month, day) * 86400 * 1'000'000'000};
 }
 
+namespace {
+
+/// [min] east of Greenwich of "Z", "+02", "+02:00", "-0530".
+std::optional<std::int64_t> zoneOf(std::string_view text) {
+  if (text == "Z") return 0;
+  std::int64_t hours = 0, minutes = 0;
+  if (!field(text, 1, 2, 0, 14, hours)) return {};
+  const std::size_t colon = text.size() > 3 && text[3] == ':' ? 1 : 0;
+  if (text.size() > 3 && (text.size() != 5 + colon || !field(text, 3 + colon, 2, 0, 59, minutes)))
+    return {};
+  return (text[0] == '-' ? -1 : 1) * (60 * hours + minutes);
+}
+
+}  // namespace
+
 std::optional<Stamp> stampOfDate(std::string_view text) {
+  if (const std::size_t at = text.find_first_of("Z+-", 19); at != std::string_view::npos) {
+    const auto zone = zoneOf(text.substr(at));
+    const auto there = stampOfDate(text.substr(0, at));
+    if (!zone || !there) return {};
+    return Stamp{there->ns - *zone * 60 * 1'000'000'000};
+  }
   if (text.size() < 19 || text[13] != ':' || text[16] != ':') return {};
   const auto day = stampOfDay(text.substr(0, 10));
   std::int64_t hour = 0, minute = 0;

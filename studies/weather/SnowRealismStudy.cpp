@@ -143,7 +143,7 @@ std::vector<std::size_t> strongestFirst(const Judgment& j) {
   return order;
 }
 
-double medianOf(const Halves& halves, std::size_t feature) {
+double middleOf(const Halves& halves, std::size_t feature) {
   std::vector<float> values;
   for (const Rows& half : halves.of)
     for (const auto& f : half) values.push_back(f[feature]);
@@ -160,7 +160,7 @@ StudyTable featuresTable(const std::string& name, const Halves& real, const Halv
   for (const std::size_t f : strongestFirst(j))
     table.rows.push_back(
         {kSnowFeatureNames[f], fmt::format("{:.3f}", j.falls[f]), fmt::format("{:.3f}", j.alone[f]),
-         fmt::format("{:.3f}", medianOf(real, f)), fmt::format("{:.3f}", medianOf(simulated, f))});
+         fmt::format("{:.3f}", middleOf(real, f)), fmt::format("{:.3f}", middleOf(simulated, f))});
   return table;
 }
 

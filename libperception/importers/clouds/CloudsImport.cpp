@@ -10,23 +10,28 @@
 #include "libperception/importers/Importer.h"
 #include "libperception/importers/clouds/CloudFolder.h"
 #include "libperception/importers/clouds/ImportClouds.h"
+#include "libperception/importers/kitti/KittiFiles.h"
 
 namespace perception {
 namespace {
 
 /// [s] At the ends of a stamped pose file, the first or last pose is used up to this far in time.
 constexpr double kPoseReach = 0.2;
+/// [s] Poses are by the clock of the files' names if they begin so near to it.
+constexpr double kNearInTime = 3600;
 
 /// A folder of scans in one of the supported formats.
 class CloudsImporter final : public Importer {
  public:
   void declare(CLI::App& cli) override;
+  void prepare(ImportOptions& options) override { rate_given_ = options.rate > 0; }
   void run(ImportLog& log) override;
 
  private:
-  void readStamps(const std::vector<FrameFile>& files, double rate);
+  void readStamps(const std::vector<FrameFile>& files, ImportLog& log);
+  bool readStampsOfNames(const std::vector<FrameFile>& files);
   void readViewpoints(const std::vector<FrameFile>& files, ImportLog& log);
-  void readPoses(const std::vector<FrameFile>& files);
+  void readPoses(const std::vector<FrameFile>& files, ImportLog& log);
   void findFormat(const std::vector<FrameFile>& files, ImportLog& log);
   std::optional<Pose3> poseAt(std::size_t index) const;
   Pose3 mount() const;
@@ -40,6 +45,8 @@ class CloudsImporter final : public Importer {
   std::vector<StampedPose> stamped_;  ///< tum with stamps; else
   std::vector<Pose3> poses_;          ///< one a file
   bool by_number_ = false;            ///< files are missing
+  bool rate_given_ = false;
+  bool dated_ = false;  ///< stamps_ are times of day, not counted by the rate
 };
 
 /// Where files are missing, line k is that of file k, as in KITTI. False: there are fewer lines.
@@ -58,8 +65,10 @@ void CloudsImporter::declare(CLI::App& cli) {
   format_.columns.clear();
   cli.add_option("--clouds", clouds_, "folder of scans, one file each, in order of name")
       ->required();
-  cli.add_option("--stamps", stamps_file_,
-                 "a line a file: seconds since 1970, or 2011-09-26 13:02:25.96; else --rate");
+  cli.add_option(
+      "--stamps", stamps_file_,
+      "a line a file: time since 1970 (s, ms, us, ns), or 2011-09-26 13:02:25.96; without: the "
+      "names of the files, if they are such times, else --rate");
   cli.add_option("--poses", poses_file_, "ego motion; without: the vehicle stands");
   cli.add_option("--poses-format", poses_format_,
                  "kitti: 12 numbers (3x4), a line a file; tum: t x y z qx qy qz qw, by time where "
@@ -94,15 +103,38 @@ Pose3 CloudsImporter::mount() const {
   return makePose(p[0], p[1], p[2], radians(p[3]), radians(p[4]), radians(p[5]));
 }
 
-void CloudsImporter::readStamps(const std::vector<FrameFile>& files, double rate) {
-  for (std::size_t i = 0; i < files.size() && stamps_file_.empty(); ++i)
+/// Recorders name files by their time, 1700000000123456789.bin. Rising numbers from 2000 to 2100
+/// are no counts.
+bool CloudsImporter::readStampsOfNames(const std::vector<FrameFile>& files) {
+  const Stamp least = *stampOfDay("2000-01-01"), most = *stampOfDay("2100-01-01");
+  std::vector<Stamp> stamps;
+  for (const FrameFile& file : files) {
+    const auto stamp = stampOfSeconds(file.stem);
+    if (!stamp || *stamp < least || most < *stamp) return false;
+    if (!stamps.empty() && *stamp <= stamps.back()) return false;
+    stamps.push_back(*stamp);
+  }
+  stamps_ = std::move(stamps);
+  return true;
+}
+
+void CloudsImporter::readStamps(const std::vector<FrameFile>& files, ImportLog& log) {
+  dated_ = !stamps_file_.empty();
+  if (!dated_ && !rate_given_ && files.size() > 1 && readStampsOfNames(files)) {
+    dated_ = true;
+    return log.note("no --stamps: the files are named by their times, which are taken (--rate)");
+  }
+  const double rate = log.options().rate;
+  for (std::size_t i = 0; i < files.size() && !dated_; ++i)
     stamps_.push_back(stampAtRate(kUndatedStart, files[i].number - files.front().number, rate));
-  if (stamps_file_.empty()) return;
+  if (!dated_)
+    return log.note(fmt::format("no --stamps: taken as {:g} scans a second (--rate)", rate));
   forEachRow(stamps_file_, kSpaces, [this](const TextRow& row) {
     const std::string date = row.size() > 1 ? row.text(0) + " " + row.text(1) : row.text(0);
     const auto stamp = row.size() == 1 ? stampOfSeconds(row.text(0)) : std::nullopt;
     const auto dated = stamp ? stamp : stampOfDate(date);
-    if (!dated) row.failLine("expected seconds since 1970 or 2011-09-26 13:02:25.964");
+    if (!dated)
+      row.failLine("expected seconds since 1970 (or ms, us, ns) or 2011-09-26 13:02:25.964");
     if (!stamps_.empty() && *dated <= stamps_.back()) row.failLine("not after the line before");
     stamps_.push_back(*dated);
   });
@@ -133,21 +165,35 @@ void CloudsImporter::readViewpoints(const std::vector<FrameFile>& files, ImportL
   }
 }
 
-void CloudsImporter::readPoses(const std::vector<FrameFile>& files) {
+/// Quaternions in the other order turn a vehicle on its back.
+bool areUpsideDown(const std::vector<StampedPose>& poses) {
+  constexpr double kDown = -0.5;
+  return std::all_of(poses.begin(), poses.end(),
+                     [](const StampedPose& p) { return p.pose.linear()(2, 2) < kDown; });
+}
+
+void CloudsImporter::readPoses(const std::vector<FrameFile>& files, ImportLog& log) {
   if (poses_file_.empty()) return;
   if (poses_format_ == "tum") {
     stamped_ = readTumPoses(poses_file_);
-    for (std::size_t i = 1; i < stamped_.size() && !stamps_file_.empty(); ++i) {
+    if (areUpsideDown(stamped_) && mount().linear()(2, 2) > 0)
+      log.warn(
+          fmt::format("{}: all poses stand upside down; expected t x y z qx qy qz qw: are they "
+                      "t x y z qw qx qy qz?",
+                      poses_file_));
+    const bool by_time =
+        dated_ &&
+        (!stamps_file_.empty() || std::abs(stamped_.front().stamp - stamps_.front()) < kNearInTime);
+    for (std::size_t i = 1; i < stamped_.size() && by_time; ++i) {
       if (stamped_[i].stamp <= stamped_[i - 1].stamp)
         throw DataError(
             fmt::format("{}: pose {} is not later than the one before", poses_file_, i));
     }
-    if (!stamps_file_.empty()) return;
+    if (by_time) return;
     for (const StampedPose& p : stamped_) poses_.push_back(p.pose);
     stamped_.clear();
   } else {
-    forEachRow(poses_file_, kSpaces,
-               [this](const TextRow& row) { poses_.push_back(row.pose34(0)); });
+    poses_ = readKittiPoses(poses_file_, poses_format_);
   }
   if (poses_.size() == files.size()) return;
   by_number_ = pickByNumber(files, poses_);
@@ -194,9 +240,9 @@ void CloudsImporter::run(ImportLog& log) {
   if (!found.others.empty())
     log.note(fmt::format("no scans by their names: {} files of {}, such as {}", found.others.size(),
                          clouds_, found.others.front()));
-  readStamps(files, log.options().rate);
+  readStamps(files, log);
   readViewpoints(files, log);
-  readPoses(files);
+  readPoses(files, log);
   const auto missing = files.back().number + 1 - static_cast<std::int64_t>(files.size());
   if (by_number_)
     log.note(
@@ -205,8 +251,6 @@ void CloudsImporter::run(ImportLog& log) {
   const Pose3 T_ego_pose = poses_frame_ == "ego" ? Pose3::Identity() : T_ego_lidar;
   const bool has_poses = !poses_.empty() || !stamped_.empty();
   if (!has_poses) log.note("no --poses: the vehicle is taken to stand still");
-  if (stamps_file_.empty())
-    log.note(fmt::format("no --stamps: taken as {:g} scans a second (--rate)", log.options().rate));
   findFormat(files, log);
   // World: the ego frame at the first pose of the file.
   const Pose3 origin = !has_poses         ? Pose3::Identity()

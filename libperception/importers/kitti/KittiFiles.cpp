@@ -95,7 +95,8 @@ std::vector<Pose3> readKittiPoses(const std::string& path, const std::string& fo
   if (format == "tum") {
     for (const StampedPose& p : readTumPoses(path)) poses.push_back(p.pose);
   } else {
-    forEachRow(path, kSpaces, [&](const TextRow& row) {
+    forEachRow(path, kCommas, [&](const TextRow& row) {
+      if (row.text(0).front() == '#') return;
       row.expect(row.size() == 12, "12 (8 are those of --poses-format tum)");
       poses.push_back(row.pose34(0));
     });

@@ -158,6 +158,8 @@ LidarCloud cloudOf(const PointCloud2& message, double intensity_max) {
   for (int i = 0; i < 3; ++i) {
     const Column column(message, {names[i]});
     if (!column) throw std::runtime_error(fmt::format("points without a field {}", names[i]));
+    if (column.field().datatype < PointField::kF32)
+      throw std::runtime_error("x, y and z are whole numbers, whose unit is not said");
     column.forEach([&](double value) { to[i]->push_back(static_cast<float>(value)); });
   }
   if (const Column column(message,

@@ -1,8 +1,10 @@
 // Recordings with odd names, transforms and times of points.
 #include <gtest/gtest.h>
 
+#include <cstdint>
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <variant>
 #include <vector>
@@ -54,6 +56,24 @@ TEST_F(OddTopics, ATransformThatIsNoPoseCostsItselfAlone) {
   importOf(plan, 3);
   EXPECT_NEAR(framesOf("points").at(3).T_ego_sensor.translation().x(), 0.5, 1e-9);
   expectSaid("transforms of \"camera\": left out where they are a pose that is not finite");
+}
+
+TEST_F(OddTopics, PointsInWholeNumbersHaveNoUnitAndAreRefused) {
+  McapWriter writer(file("drive.mcap"), "ros2");
+  const auto channel =
+      writer.addChannel("/points", "cdr", {"sensor_msgs/msg/PointCloud2", "ros2msg", ""});
+  ros::PointCloud2 message;
+  message.header = {Stamp{kBegin}, "velodyne"};
+  message.height = 1, message.width = 1, message.point_step = 6, message.row_step = 6;
+  for (const char* name : {"x", "y", "z"})
+    message.point_fields.push_back({name,
+                                    2 * static_cast<std::uint32_t>(message.point_fields.size()),
+                                    ros::PointField::kI16, 1});
+  message.data = std::string_view("\x10\x27\0\0\0\0", 6);
+  writer.write(channel, Stamp{kBegin}, ros::encoded(message, ros::Encoding::kCdr));
+  writer.close();
+  EXPECT_NE(import("bag", {"--bag", file("drive.mcap")}), 0);
+  expectSaid("x, y and z are whole numbers, whose unit is not said");
 }
 
 /// Two points, half a scan apart, with a field "timestamp".
