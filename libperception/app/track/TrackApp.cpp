@@ -254,12 +254,12 @@ void TrackApp::trackLog(const PipelineSetup& setup, const Shard& shard) {
   std::unique_ptr<RosView> ros;
   if (!publish.empty())
     ros = std::make_unique<RosView>(rosTopicsFor(publish, shard.log, namesOf(setup.model.classes)));
-  const EventLog::Listener tell_ros = listenerOf(ros.get());
   if (view)
-    view->watch(run, tell_ros);
+    view->watch(run, listenerOf(ros.get()));
   else if (ros)
-    run.listen(tell_ros);
-  if (!view && !ros && !liveIniOf(shard.log)) run.letGridLag();
+    run.listen(listenerOf(ros.get()));
+  else if (!liveIniOf(shard.log))
+    run.letGridLag();
   run.read([&](const Scene& scene) {
     if (view) view->put(scene, run);
     if (ros) ros->put(scene, run);
