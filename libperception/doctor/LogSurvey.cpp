@@ -1,6 +1,5 @@
 #include "libperception/doctor/LogSurvey.h"
 
-#include <mrpt/obs/CObservation2DRangeScan.h>
 #include <mrpt/obs/CObservationGPS.h>
 #include <mrpt/obs/CObservationIMU.h>
 #include <mrpt/obs/CObservationOdometry.h>
@@ -61,6 +60,11 @@ void addReturn(SensorFacts& facts, double range, double bearing) {
   ++facts.ranges[std::min(kRangeBins - 1, static_cast<std::size_t>(range))];
   ++facts.bearings[static_cast<std::size_t>(degrees(std::abs(bearing)))];
   facts.farthest_bearing = std::max(facts.farthest_bearing, std::abs(bearing));
+}
+
+/// Whether all returns lie in the plane of the sensor's x and y, as those of a laser scanner.
+bool isOneLayer(const LidarCloud& cloud) {
+  return std::all_of(cloud.z.begin(), cloud.z.end(), [](float z) { return std::abs(z) < 1e-3F; });
 }
 
 void addCloud(SensorFacts& facts, const LidarCloud& cloud) {
@@ -175,6 +179,8 @@ void LogSurvey::lookAt(SensorFacts& facts, const SensorFrame& frame) {
   if (const auto* cloud = std::get_if<LidarCloud>(&frame.data)) {
     facts.kind = "lidar";
     if (!facts.inputs && cloud->size() > 0) facts.inputs = LidarInputs::of(*cloud);
+    if (cloud->size() > 0)
+      facts.planar = (facts.returns == 0 || facts.planar) && isOneLayer(*cloud);
     addCloud(facts, *cloud);
     facts.timeless += timesOutsideOf(*cloud);
     const GroundPlane plane = GroundEstimator(searchEverywhere()).update(frame);
@@ -270,7 +276,6 @@ void LogSurvey::look(const mrpt::obs::CObservation& observation) {
   } else if (isSensorData(observation)) {
     if (sensors_.size() >= kMostLabels && sensors_.count(label) == 0) return;
     SensorFacts& facts = sensors_[label];
-    facts.planar = dynamic_cast<const CObservation2DRangeScan*>(&observation) != nullptr;
     if (const auto frame = frameFromObservation(observation, &facts.counts, images_)) {
       lookAt(facts, *frame);
     } else {

@@ -22,7 +22,7 @@ namespace perception {
 struct SensorFacts {
   /// As [sensor.LABEL] kind (lidar, boxes, positions, radar), or "image".
   std::string kind;
-  bool planar = false;  ///< one layer of a scanner: CObservation2DRangeScan
+  bool planar = false;  ///< a lidar of one layer: all of its returns lie in one plane
   std::uint64_t frames = 0, unusable = 0;
   DecodeCounts counts;
   std::vector<Stamp> stamps;               ///< of usable frames

@@ -10,6 +10,7 @@
 #include "libperception/doctor/DoctorReport.h"
 #include "libperception/pipeline/PipelineSetup.h"
 #include "libperception/scene/files/OutputFile.h"
+#include "libperception/sensors/frames/FromObservation.h"
 #include "libperception/sensors/frames/ToObservation.h"
 #include "libperception/sensors/observations/CObservationLidarScan.h"
 #include "libperception/sensors/observations/Conversions.h"
@@ -86,6 +87,24 @@ TEST(SiteIni, OneScannerOfOneLayerHasItsFieldOfViewAndAHeight) {
   high.look(planarScan("LASER", 0.8));
   const PipelineSetup known = setupOf(high);
   EXPECT_FALSE(known.sensors.at(*known.sensorOf("LASER")).params.pose);
+}
+
+// sensor_msgs/LaserScan is imported as a cloud.
+TEST(SiteIni, ACloudInOnePlaneIsThatOfAScannerOfOneLayer) {
+  const auto frame = frameFromObservation(planarScan("LASER", 0.8));
+  ASSERT_TRUE(frame);
+  LogSurvey survey;
+  survey.look(*observationFromFrame(*frame));
+  const SensorFacts& facts = survey.sensors().at("LASER");
+  EXPECT_TRUE(facts.planar);
+  LogSurvey same;
+  same.look(planarScan("LASER", 0.8));
+  EXPECT_EQ(siteIni(survey, {}, "log"), siteIni(same, {}, "log"));
+
+  SensorFrame raised = *frame;
+  std::get<LidarCloud>(raised.data).z[40] = 0.2F;
+  survey.look(*observationFromFrame(raised));
+  EXPECT_FALSE(survey.sensors().at("LASER").planar);
 }
 
 TEST(SiteIni, SeveralScannersOfOneLayerAreMerged) {
