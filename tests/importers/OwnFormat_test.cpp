@@ -4,6 +4,7 @@
 
 #include "libperception/importers/ImportText.h"
 #include "libperception/importers/Importer.h"
+#include "libperception/importers/StampText.h"
 #include "tests/importers/ImportFixture.h"
 
 // A format that the library does not know: a class and a row of importers() are all it needs.

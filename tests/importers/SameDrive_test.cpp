@@ -12,6 +12,7 @@
 #include "libperception/app/evaluate/EvaluateApp.h"
 #include "libperception/core/GroundTruth.h"
 #include "libperception/importers/ImportText.h"
+#include "libperception/importers/StampText.h"
 #include "tests/importers/DriveLayouts.h"
 #include "tests/importers/ImportFixture.h"
 #include "tests/support/CommandOutput.h"

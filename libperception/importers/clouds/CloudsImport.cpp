@@ -8,6 +8,7 @@
 #include "libperception/core/PoseSteps.h"
 #include "libperception/importers/ImportText.h"
 #include "libperception/importers/Importer.h"
+#include "libperception/importers/StampText.h"
 #include "libperception/importers/clouds/CloudFolder.h"
 #include "libperception/importers/clouds/ImportClouds.h"
 #include "libperception/importers/kitti/KittiFiles.h"

@@ -13,6 +13,7 @@
 #include "libperception/importers/ImportText.h"
 #include "libperception/importers/Importer.h"
 #include "libperception/importers/SensorLabels.h"
+#include "libperception/importers/StampText.h"
 #include "libperception/importers/kitti/KittiDetections.h"
 #include "libperception/importers/kitti/KittiFiles.h"
 #include "libperception/importers/kitti/KittiLabels.h"

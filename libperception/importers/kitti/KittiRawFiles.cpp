@@ -9,6 +9,7 @@
 
 #include "libperception/core/Error.h"
 #include "libperception/importers/ImportText.h"
+#include "libperception/importers/StampText.h"
 
 namespace perception {
 namespace fs = std::filesystem;

@@ -10,6 +10,7 @@
 #include "libperception/importers/ImportText.h"
 #include "libperception/importers/Importer.h"
 #include "libperception/importers/SensorLabels.h"
+#include "libperception/importers/StampText.h"
 #include "libperception/importers/kitti/KittiFiles.h"
 #include "libperception/importers/truth/InstanceBoxes.h"
 #include "libperception/importers/truth/PointLabelFiles.h"

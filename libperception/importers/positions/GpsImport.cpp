@@ -5,6 +5,7 @@
 
 #include "libperception/core/Error.h"
 #include "libperception/importers/Importer.h"
+#include "libperception/importers/StampText.h"
 #include "libperception/importers/positions/ImportGps.h"
 #include "libperception/sensors/satellites/PositionTrack.h"
 

@@ -10,6 +10,7 @@
 #include "libperception/importers/ImportText.h"
 #include "libperception/importers/Importer.h"
 #include "libperception/importers/SensorLabels.h"
+#include "libperception/importers/StampText.h"
 #include "libperception/importers/clouds/ImportClouds.h"
 #include "libperception/importers/street_sets/AimotiveFiles.h"
 

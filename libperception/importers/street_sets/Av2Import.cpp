@@ -14,6 +14,7 @@
 #include "libperception/importers/ImportText.h"
 #include "libperception/importers/Importer.h"
 #include "libperception/importers/SensorLabels.h"
+#include "libperception/importers/StampText.h"
 #include "libperception/importers/clouds/ImportClouds.h"
 #include "libperception/importers/truth/TruthTypes.h"
 

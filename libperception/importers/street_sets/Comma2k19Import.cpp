@@ -14,6 +14,7 @@
 #include "libperception/importers/ImportText.h"
 #include "libperception/importers/Importer.h"
 #include "libperception/importers/SensorLabels.h"
+#include "libperception/importers/StampText.h"
 #include "libperception/importers/positions/ImportGps.h"
 #include "libperception/sensors/observations/Conversions.h"
 

@@ -9,6 +9,7 @@
 #include "libperception/core/Csv.h"
 #include "libperception/core/Error.h"
 #include "libperception/importers/ImportText.h"
+#include "libperception/importers/StampText.h"
 #include "libperception/importers/clouds/ImportClouds.h"
 #include "libperception/importers/positions/ImportClock.h"
 
