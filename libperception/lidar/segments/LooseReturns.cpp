@@ -25,13 +25,25 @@ constexpr float kGrazing = 0.05f;  // [-] of the range: a cell of 0.4 deg on a s
 // The same among flakes: a surface is smooth and 0.24 m wide, a cloud of flakes has depth.
 constexpr float kSmooth = 0.1f;          // [m] in range
 constexpr float kSmoothGrazing = 0.02f;  // [-] of the range: a side at 20 deg
+// Of the directions with a return, those that have to tell: where more end well before, it is the
+// back of a cloud, behind which nothing returns.
+constexpr float kLeastTold = 0.5f;
 
 /// Cells of direction about a return.
 struct CellsAbout {
   int solid = 0, passed = 0;  ///< no beam, or one, returns from behind it
+  int before = 0;             ///< all end well before it
   bool loose() const {
     return solid + passed >= kLeastCells &&
            static_cast<float>(solid) < kLeastSolid * static_cast<float>(solid + passed);
+  }
+  /// Of those that tell, solid ones; kFewDirections: too few tell, by `least` [-] of all.
+  float solidShare(float least) const {
+    const int told = solid + passed;
+    const auto all = static_cast<float>(told + before);
+    if (told < kLeastInRow || static_cast<float>(told) < least * all)
+      return PlacedReturns::kFewDirections;
+    return static_cast<float>(solid) / static_cast<float>(told);
   }
 };
 
@@ -46,18 +58,19 @@ template <int around>
 PERCEPTION_LANES CellsAbout cellsWithin(const DirectionCells& cells,
                                         const DirectionCells::Place& place, const Shell& shell) {
   using Float = std::conditional_t<around == 1, Float4, Float8>;
-  constexpr int kPassed = 256;  // told and passed in one number
-  // Cells without a return, whose range is 0, do not tell.
-  const float least = std::max(shell.least, std::numeric_limits<float>::denorm_min());
-  IntsOf<Float> told{}, passed{};  // numbers below zero
+  constexpr int kNext = 64;  // three counts of up to 25 in one number
+  // Cells without a return, whose range is 0, are not counted.
+  const float any = std::numeric_limits<float>::denorm_min(), least = std::max(shell.least, any);
+  IntsOf<Float> held{}, told{}, passed{};  // numbers below zero
   for (int row = -around; row <= around; ++row) {
     const auto farthest = load<Float>(cells.farthestFrom(place.column - around, place.row + row));
-    told += farthest >= least, passed += farthest > shell.behind;
+    held += farthest >= any, told += farthest >= least, passed += farthest > shell.behind;
   }
-  const IntsOf<Float> both = told + kPassed * passed;
+  const IntsOf<Float> counts = held + kNext * (told + kNext * passed);
   int sum = 0;
-  for (int lane = 0; lane <= 2 * around; ++lane) sum -= both[lane];
-  return {sum % kPassed - sum / kPassed, sum / kPassed};
+  for (int lane = 0; lane <= 2 * around; ++lane) sum -= counts[lane];
+  const int all = sum % kNext, tell = sum / kNext % kNext, gone = sum / kNext / kNext;
+  return {tell - gone, gone, all - tell};
 }
 
 /// The same at the border.
@@ -67,8 +80,10 @@ CellsAbout cellsAtBorder(const DirectionCells& cells, const DirectionCells::Plac
   for (int row = place.row - around; row <= place.row + around; ++row) {
     for (int column = place.column - around; column <= place.column + around; ++column) {
       const DirectionCells::Cell cell = cells.at(column, row);
-      if (cell.empty() || cell.farthest < shell.least) continue;
-      ++(cell.farthest > shell.behind ? about.passed : about.solid);
+      if (cell.empty()) continue;
+      ++(cell.farthest < shell.least    ? about.before
+         : cell.farthest > shell.behind ? about.passed
+                                        : about.solid);
     }
   }
   return about;
@@ -99,8 +114,7 @@ PERCEPTION_LANES void sharesIn(const PlacedBlock& block, const DirectionCells& c
     const Shell shell{range - bend - grazing * range, range + bend};
     const CellsAbout about = among ? cellsAbout<2>(cells, block.place[k], shell)
                                    : cellsAbout<1>(cells, block.place[k], shell);
-    const int told = about.solid + about.passed;
-    if (told >= kLeastInRow) shares[k] = static_cast<float>(about.solid) / static_cast<float>(told);
+    shares[k] = about.solidShare(among ? kLeastTold : 0);
   }
 }
 

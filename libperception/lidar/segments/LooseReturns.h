@@ -16,7 +16,8 @@ std::vector<std::uint32_t> surfaceReturns(const EgoPoints& all, const DirectionC
 
 /// Of each of `points` the share of the directions about it that end at its range, as
 /// PlacedReturns::solid; those that end well before it tell nothing. Up to
-/// PlacedReturns::kFlakesWithin these are 25, beyond it nine; method.md 8.4.
+/// PlacedReturns::kFlakesWithin these are 25, of which half have to tell, beyond it nine; method.md
+/// 8.4.
 std::vector<float> solidShares(const EgoPoints& all, const DirectionCells& cells,
                                const std::vector<std::uint32_t>& points);
 

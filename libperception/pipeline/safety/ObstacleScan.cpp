@@ -55,16 +55,18 @@ class Doubter {
     float held = std::min(doubt, static_cast<float>(cause));
     if (weighted_) held = std::max(held, std::min(doubt, verdictOn(i)));
     const bool in_wake = here.wake > 0;
-    if (!in_wake && solid >= kWall && trust > 0) held = 0;
+    const bool wall = !in_wake && solid >= kWall && trust > 0;
+    if (wall) held = 0;
     const float weight = 1 - held;
     const float lone = alone && solid < kWall ? static_cast<float>(cause) : 0;
     const float dense = weight * (1 - lone);
     if (weighted_) obstacles.scan.weights.push_back(weight);
     obstacles.dense.push_back(dense < kDoubted ? 0 : dense);
     obstacles.doubted.push_back(doubt >= kDoubted);
-    if (caused_)
-      obstacles.surface.push_back(dense < 1 && trust > 0 &&
-                                  solid >= (in_wake ? kWallInWake : perhapsSurface(i)));
+    if (!caused_) return;
+    obstacles.surface.push_back(dense < 1 && trust > 0 &&
+                                solid >= (in_wake ? kWallInWake : perhapsSurface(i)));
+    obstacles.solid.push_back(wall);
   }
 
  private:

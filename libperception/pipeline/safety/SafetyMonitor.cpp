@@ -14,22 +14,27 @@ namespace {
 constexpr double kLeaves = 0.5;     // [s] for which a cell belongs to what has left it; assumed
 constexpr double kCarHeight = 1.7;  // [m] of a vehicle whose height is not given; assumed
 constexpr double kFresh = 0.5;      // [s] after which a scan says nothing of the way ahead; assumed
+/// A surface of so many times `stop.returns` returns in one scan is not one by chance; assumed.
+constexpr double kSolidAtOnce = 2;
 
-/// Whether of the obstacle returns in the corridor, up to the obstacle and half a meter into it,
-/// more are doubted than not.
-bool inCloud(const Corridor& corridor, const GridScan& scan, double obstacle) {
+/// Whether most of the obstacle returns in the corridor, up to the obstacle and half a meter into
+/// it, are doubted. Not where `solid` or more returns of that half meter are of a solid surface.
+bool inCloud(const Corridor& corridor, const ObstacleScan& obstacles, double obstacle,
+             double solid) {
   constexpr double kInto = 0.5;  // [m]
+  const GridScan& scan = obstacles.scan;
   if (scan.weights.size() != scan.hits.size()) return false;
   const Pose3 T_ego_world = corridor.T_world_ego.inverse();
-  std::size_t doubted = 0, trusted = 0;
+  std::size_t doubted = 0, trusted = 0, walls = 0;
   for (const std::uint32_t i : nearCorridor(corridor, obstacle + kInto, scan.hits)) {
     const Vector3 p = T_ego_world * scan.hits[i];
     const ArcPlace place = arcPlace(corridor, p.x(), p.y());
     if (std::abs(place.d) > corridor.width / 2) continue;
     if (place.s < corridor.from || place.s > obstacle + kInto) continue;
     ++(scan.weights[i] < kDoubted ? doubted : trusted);
+    walls += !obstacles.solid.empty() && obstacles.solid[i] && place.s >= obstacle;
   }
-  return doubted > trusted;
+  return doubted > trusted && static_cast<double>(walls) < solid;
 }
 
 void trustHit(ObstacleScan& obstacles, std::size_t hit) {
@@ -138,7 +143,8 @@ PathAhead SafetyMonitor::pathAhead(const EgoState& ego) const {
   path.free.seen = seenByBeams(path.corridor, path.free.seen, last_.scan.origin,
                                {&last_.scan.hits, &last_.scan.clear}, vehicleHeight());
   path.corridor.max = look_ahead;
-  path.in_cloud = path.free.blocked && inCloud(path.corridor, last_.scan, path.free.distance);
+  path.in_cloud = path.free.blocked &&
+                  inCloud(path.corridor, last_, path.free.distance, kSolidAtOnce * stop_.returns);
   if (path.free.blocked) countReturns(last_, path);
   path.returns = std::max(path.returns, static_cast<std::uint32_t>(found.returns));
   return path;

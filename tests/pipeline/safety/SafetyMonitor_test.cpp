@@ -70,6 +70,21 @@ TEST(SafetyMonitor, InACloudAStopTakesTwoScenesInARow) {
   }
 }
 
+TEST(SafetyMonitor, InACloudASurfaceOfManyReturnsCallsForAStopAtOnce) {
+  for (const int solid : {15, 25}) {
+    BoxScan scan(0, 20);
+    scan.frame.causes.weather = 1;
+    scan.addCloud(0.1F);
+    scan.solid(0.1F);
+    std::fill_n(scan.returns.solid.begin(), solid, 0.8F);  // of the 77 returns of the box
+    SafetyMonitor monitor(gridOfBox(), {});
+    monitor.add(scan.frame, scan.returns);
+    const PathAhead path = monitor.pathAhead(egoDriving(0, 12));
+    ASSERT_TRUE(path.free.blocked);
+    EXPECT_EQ(monitor.advise(path, sceneDriving(0, 12)).stop, solid == 25);
+  }
+}
+
 TEST(SafetyMonitor, AnOlderSceneIsNotTheOneBefore) {
   SafetyMonitor monitor(gridOfBox(), {});
   const auto stops = [&](double t) {
