@@ -138,7 +138,8 @@ TEST(GroundSurface, FollowsARampThatThePlaneMisses) {
   ASSERT_GT(far, 500u);
   const EgoPoints points = usablePoints(frame, {});
   const auto obstacles = [&](const SurfaceParams& params) {
-    const auto heights = GroundSurface(frame.ground, points, params).heightsAbove(points);
+    std::vector<float> heights;
+    GroundSurface(frame.ground, points, params, &heights);
     int count = 0;
     for (std::size_t i = 0; i < heights.size(); ++i)
       count += heights[i] > 0.3f && std::hypot(points.x[i], points.y[i]) < 35;
@@ -168,7 +169,8 @@ TEST(GroundSurface, FollowsASlopeWithinACell) {
   for (const float sign : {1.0f, -1.0f}) {
     const SensorFrame frame = bentRoad([&](float range) { return sign * curve(range); });
     const EgoPoints points = usablePoints(frame, {});
-    const auto heights = GroundSurface(frame.ground, points, {}).heightsAbove(points);
+    std::vector<float> heights;
+    GroundSurface(frame.ground, points, {}, &heights);
     for (std::size_t i = 0; i < heights.size(); ++i)
       if (std::hypot(points.x[i], points.y[i]) < 45) {
         EXPECT_NEAR(heights[i], 0, 0.15);

@@ -73,7 +73,7 @@ class SnowRun {
     PointParams limits;
     limits.vehicle_front = limits.vehicle_rear = 2.6;  // as ini/wads.ini
     points_ = usablePoints(frame_, limits);
-    heights_ = GroundSurface(frame_.ground, points_, {}).heightsAbove(points_);
+    GroundSurface(frame_.ground, points_, {}, &heights_);
     const auto& cloud = std::get<LidarCloud>(frame_.data);
     GridScan scan;
     scan.stamp = frame_.stamp;

@@ -30,14 +30,13 @@ struct SurfaceParams {
 /// beams, sector by sector about the sensor, and linear from cell to cell (method.md 8.1).
 class GroundSurface {
  public:
-  /// `heights`, unless null, is set to heightsAbove(points).
+  /// `heights`, unless null, is set to the height of every point above the ground [m]; negative for
+  /// mirrored returns.
   GroundSurface(const GroundPlane& plane, const EgoPoints& points, const SurfaceParams& params,
                 std::vector<float>* heights = nullptr);
 
   /// [m] height of the ground at a position, ego frame.
   double heightAt(double x, double y) const;
-  /// [m] height of every point above the ground; negative for mirrored returns.
-  std::vector<float> heightsAbove(const EgoPoints& points) const;
 
  private:
   /// Heights of all points above the plane [m], with the places in their rings as their last bits,
