@@ -2,7 +2,8 @@
 // validates COUNT (100) messages of each against the published schema of its name (@foxglove/schemas) and the one that the channel has:
 //   npm i @foxglove/ws-protocol ws @foxglove/schemas ajv
 //   perception-track -c ini/demo.ini -i live:PLAY.ini -o OUT --serve 8765 --duration 40 --set weather.filter=trust &
-//   node tests/live/check_foxglove.mjs FOLDER_WITH_node_modules ws://127.0.0.1:8765 [COUNT]
+//   node tests/live/check_foxglove.mjs FOLDER_WITH_node_modules ws://127.0.0.1:8765 [COUNT [SUBPROTOCOL]]
+// SUBPROTOCOL is the client's own (foxglove.websocket.v1) unless another is given (foxglove.sdk.v1).
 // PLAY.ini plays a log again and again: [LOG] driver = CRawlogSensor, process_rate = 100, rawlog = /PATH/demo.rawlog, repeats = 0.
 // Events may be few, and may tell of an earlier instant. What came of each channel is printed, and it ends with 1 where a
 // message was wrong or the run ended before each channel but those of events and weather had COUNT.
@@ -17,8 +18,9 @@ const Ajv = require("ajv").default;
 
 const address = process.argv[3], wanted = Number(process.argv[4] ?? 100);
 const ajv = new Ajv({ strict: false });
-const protocols = [FoxgloveClient.SUPPORTED_SUBPROTOCOL];
-const client = new FoxgloveClient({ ws: new WebSocket(address, protocols) });
+const protocols = [process.argv[5] ?? FoxgloveClient.SUPPORTED_SUBPROTOCOL];
+const socket = new WebSocket(address, protocols);
+const client = new FoxgloveClient({ ws: socket });
 const channels = new Map();  // by subscription
 let faults = 0;
 
@@ -36,7 +38,10 @@ function done() {
 }
 
 client.on("error", (error) => fault(`connection: ${error.message ?? error}`));
-client.on("serverInfo", (info) => console.log(`${protocols}: ${JSON.stringify(info)}`));
+client.on("serverInfo", (info) => {
+  if (socket.protocol !== protocols[0]) fault(`subprotocol ${socket.protocol} in place of ${protocols[0]}`);
+  console.log(`${socket.protocol}: ${JSON.stringify(info)}`);
+});
 client.on("status", (status) => fault(`status: ${status.message}`));
 client.on("close", done);
 client.on("advertise", (list) => {
