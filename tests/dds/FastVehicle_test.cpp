@@ -238,6 +238,8 @@ TEST_F(FastVehicle, WhatIsLostOnBestEffortIsCountedAndTold) {
 class FastSensors : public FastVehicle, public testing::WithParamInterface<bool> {};
 
 TEST_P(FastSensors, MessagesOfEachKindArriveAsTheImportOfTheirBagHasThem) {
+  std::ofstream(path("graph.ini"), std::ios::app)  // boxes are read where their topic is named
+      << "[topic./boxes]\nlabel = BOXES\n[topic./front/boxes]\nlabel = FRONT_BOXES\n";
   test::writeSensorTopics(path("sensors.mcap"));
   {
     ChildCommand record;

@@ -3,10 +3,12 @@
 #include <mrpt/img/CImage.h>
 #include <mrpt/io/CMemoryStream.h>
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <map>
 #include <string>
+#include <vector>
 
 #include "libperception/interop/bags/McapWriter.h"
 #include "libperception/interop/ros/RosDevices.h"
@@ -14,8 +16,28 @@
 
 namespace perception::test {
 
-inline constexpr std::size_t kSensorTopics = 8;
+inline constexpr std::size_t kSensorTopics = 10;
 inline constexpr int kSensorSteps = 20;  // at 10 Hz
+
+/// vision_msgs/Detection2D of ROS 2.
+struct ImageBox {
+  ros::Header header;
+  std::vector<ros::ObjectHypothesis> results;
+  std::array<double, 5> box{};  ///< [px, px, rad, px, px] center, angle, size
+  std::string id;
+};
+template <class Wire>
+void fields(Wire& w, ImageBox& m) {
+  w(m.header), w(m.results), w(m.box), w(m.id);
+}
+struct ImageBoxes {
+  ros::Header header;
+  std::vector<ImageBox> detections;
+};
+template <class Wire>
+void fields(Wire& w, ImageBoxes& m) {
+  w(m.header), w(m.detections);
+}
 
 /// Writes messages of one step; all sensors are at the vehicle's frame.
 class SensorTopics {
@@ -27,6 +49,7 @@ class SensorTopics {
     writeMotion(k);
     writeImages(k);
     writeRadar(k);
+    writeBoxes(k);
   }
   void close() { writer_.close(); }
 
@@ -114,6 +137,22 @@ class SensorTopics {
     layer.range_min = 0.2F, layer.range_max = 60;
     for (int i = 0; i <= 200; ++i) layer.ranges.push_back(8 + 0.1F * static_cast<float>(i % 7 + k));
     put("/bumper/scan", "sensor_msgs/LaserScan", layer);
+  }
+
+  void writeBoxes(int k) {
+    ros::ObjectHypothesis car;
+    car.class_id = "car", car.score = 0.5 + 0.01 * k;
+    ros::Detection3DArray boxes;
+    boxes.header = header_;
+    for (int i = 0; i < 3; ++i)
+      boxes.detections.push_back(
+          {header_, {car}, ros::messageOf(makePose(15.0 + i, 3.0 * i, 0.8, 0.1 * k)), {4, 2, 1.6}});
+    put("/boxes", "vision_msgs/Detection3DArray", boxes);
+    ImageBoxes image;
+    image.header = header_;
+    for (int i = 0; i < 2; ++i)
+      image.detections.push_back({header_, {car}, {20.0 + 10 * i, 24.0 + k, 0, 12, 8}, "a"});
+    put("/front/boxes", "vision_msgs/Detection2DArray", image);
   }
 
   McapWriter writer_;
