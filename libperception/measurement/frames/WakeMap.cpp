@@ -58,9 +58,8 @@ std::optional<double> WakeMap::age(const Vector2& place, Stamp now) const {
     const double ahead = d.dot(v->along), behind = -v->half_length - ahead;  // [m] of the rear
     const bool swept = age > kPresent && behind > 0 && behind <= v->advanced;
     if (std::abs(ahead) > v->half_length && !swept) continue;
-    const double since = swept ? age + behind / v->speed : age;
-    if (since > kLife) continue;
-    if (std::abs(d.x() * v->along.y() - d.y() * v->along.x()) <= halfWidth(*v, since)) return since;
+    if (std::abs(d.x() * v->along.y() - d.y() * v->along.x()) <= halfWidth(*v, age))
+      return swept ? age + behind / v->speed : age;
   }
   return std::nullopt;
 }

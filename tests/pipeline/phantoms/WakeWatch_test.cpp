@@ -61,16 +61,6 @@ TEST(WakeWatch, PhantomsBehindAVehicleMakeItsWakeOneOfPhantoms) {
   EXPECT_TRUE(scan.wakes->age({30, 0}, scan.state.stamp));
 }
 
-TEST(WakeWatch, AVehicleCameFromSomewhere) {
-  World world;
-  world.watch.add(0, world.scanAt(0, {}), world.carAt(0, 20));
-  const Stamp now = Stamp::fromSeconds(1000.2);
-  const auto wakes = world.watch.at(now);
-  ASSERT_TRUE(wakes);
-  EXPECT_NEAR(wakes->age({-15, 0}, now).value_or(0), 0.2 + (15 - 2.25) / 20, 1e-9);
-  EXPECT_FALSE(wakes->age({-25, 0}, now)) << "more than a second before it had a wake";
-}
-
 TEST(WakeWatch, InClearAirThereAreNoWakes) {
   EXPECT_FALSE(World().after(20, {}).wakes);
   EXPECT_FALSE(World().after(20, {{10, 8}}).wakes) << "phantoms beside the way of the car";
