@@ -10,7 +10,7 @@
 
 #include "libperception/grid/SafetyGrid.h"
 #include "libperception/grid/way/FreeDistance.h"
-#include "libperception/live/LiveServer.h"
+#include "libperception/live/server/LiveServer.h"
 #include "libperception/measurement/frames/SensorFrame.h"
 #include "libperception/pipeline/Pipeline.h"
 #include "libperception/pipeline/phantoms/WeatherWatch.h"

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "libperception/live/LiveFeed.h"
-#include "libperception/live/LiveServer.h"
+#include "libperception/live/server/LiveServer.h"
 #include "libperception/pipeline/LogRun.h"
 #include "libperception/scene/Scene.h"
 

@@ -8,7 +8,7 @@
 #include <set>
 #include <thread>
 
-#include "tests/live/RawClient.h"
+#include "tests/live/server/RawClient.h"
 
 namespace perception::test {
 namespace {

@@ -1,4 +1,4 @@
-#include "libperception/live/LiveSession.h"
+#include "libperception/live/server/LiveSession.h"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,7 @@
 #include <string>
 #include <thread>
 
-#include "tests/live/RawClient.h"
+#include "tests/live/server/RawClient.h"
 
 namespace perception::test {
 namespace {

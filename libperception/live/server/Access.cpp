@@ -1,4 +1,4 @@
-#include "libperception/live/Access.h"
+#include "libperception/live/server/Access.h"
 
 #include <fmt/format.h>
 #include <unistd.h>

@@ -1,4 +1,4 @@
-#include "libperception/live/Outbox.h"
+#include "libperception/live/server/Outbox.h"
 
 #include <algorithm>
 #include <utility>

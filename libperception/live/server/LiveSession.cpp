@@ -1,4 +1,4 @@
-#include "libperception/live/LiveSession.h"
+#include "libperception/live/server/LiveSession.h"
 
 #include <array>
 #include <boost/asio/buffer.hpp>

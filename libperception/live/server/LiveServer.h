@@ -6,9 +6,9 @@
 #include <string>
 
 #include "libperception/core/Time.h"
-#include "libperception/live/Access.h"
 #include "libperception/live/FoxgloveProtocol.h"
-#include "libperception/live/Outbox.h"
+#include "libperception/live/server/Access.h"
+#include "libperception/live/server/Outbox.h"
 
 namespace perception {
 

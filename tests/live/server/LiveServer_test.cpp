@@ -1,4 +1,4 @@
-#include "libperception/live/LiveServer.h"
+#include "libperception/live/server/LiveServer.h"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include <thread>
 
 #include "libperception/core/Error.h"
-#include "tests/live/RawClient.h"
+#include "tests/live/server/RawClient.h"
 
 namespace perception::test {
 namespace {

@@ -14,7 +14,7 @@
 #include <string>
 #include <vector>
 
-#include "libperception/live/LiveServer.h"
+#include "libperception/live/server/LiveServer.h"
 
 namespace perception {
 
