@@ -106,9 +106,7 @@ std::vector<std::string> StreamTracker::learned() const {
 }
 
 std::vector<std::string> StreamTracker::classNames() const {
-  std::vector<std::string> names;
-  for (const ObjectClass& c : pipeline_.setup().model.classes.classes) names.push_back(c.name);
-  return names;
+  return pipeline_.setup().model.classes.names();
 }
 
 std::vector<std::string> StreamTracker::sensorLabels() const {

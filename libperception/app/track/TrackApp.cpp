@@ -33,12 +33,6 @@ constexpr double kLongestStage = 10;
 
 namespace {
 
-std::vector<std::string> namesOf(const ClassTable& classes) {
-  std::vector<std::string> names;
-  for (const ObjectClass& c : classes.classes) names.push_back(c.name);
-  return names;
-}
-
 /// Tells the graph of each event; `ros` may be null.
 EventLog::Listener listenerOf(RosView* ros) {
   if (ros == nullptr) return {};
@@ -244,7 +238,7 @@ void TrackApp::trackLog(const PipelineSetup& setup, const Shard& shard) {
     to_hash = [&](const unsigned char* bytes, std::size_t count) { log_hash.add(bytes, count); };
   std::optional<LiveView> view;
   if (serve.port) {
-    view.emplace(serve, shard.log, config_file, namesOf(setup.model.classes));
+    view.emplace(serve, shard.log, config_file, setup.model.classes.names());
     fmt::print("{}: live at {}\n", shard.log, view->url());
     std::fflush(stdout);
   }
@@ -253,7 +247,7 @@ void TrackApp::trackLog(const PipelineSetup& setup, const Shard& shard) {
   if (liveIniOf(shard.log)) watchdog.emplace(run.timing(), kLongestStage, endHungRun);
   std::unique_ptr<RosView> ros;
   if (!publish.empty())
-    ros = std::make_unique<RosView>(rosTopicsFor(publish, shard.log, namesOf(setup.model.classes)));
+    ros = std::make_unique<RosView>(rosTopicsFor(publish, shard.log, setup.model.classes.names()));
   if (view)
     view->watch(run, listenerOf(ros.get()));
   else if (ros)

@@ -58,6 +58,12 @@ double ObjectClass::yawRatePsd(double speed) const {
   return lateral_psd > 0 && yaw_rate_psd * v2 > lateral_psd ? lateral_psd / v2 : yaw_rate_psd;
 }
 
+std::vector<std::string> ClassTable::names() const {
+  std::vector<std::string> names;
+  for (const ObjectClass& c : classes) names.push_back(c.name);
+  return names;
+}
+
 ClassId ClassTable::find(const std::string& name) const {
   for (ClassId c = 0; c < size(); ++c) {
     if ((*this)[c].name == name) return c;

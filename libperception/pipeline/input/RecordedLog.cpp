@@ -21,7 +21,7 @@ TrackedRun replay(const RecordedLog& log, const ReplayMethod& method) {
   TrackedRun run;
   run.dir = log.name;
   run.first_stamp = log.first_stamp;
-  for (const ObjectClass& c : model.classes.classes) run.class_names.push_back(c.name);
+  run.class_names = model.classes.names();
   for (const RecordedLog::Entry& entry : log.entries) {
     switch (entry.kind) {
       case RecordedLog::Entry::kScan:
