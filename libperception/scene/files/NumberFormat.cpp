@@ -5,12 +5,41 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <iterator>
 #include <limits>
 
 namespace perception {
 
+namespace {
+
+/// `value` with `places` where its rounding to them is clear without exact arithmetic; else empty.
+std::string clearlyFixed(double value, int places) {
+  constexpr double kPower[] = {1, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6};
+  constexpr double kMost = 1e10, kTie = 1e-4;  // a product below it is off by some 1e-6
+  if (places < 0 || places >= static_cast<int>(std::size(kPower))) return {};
+  const double scaled = std::abs(value) * kPower[places];
+  if (!(scaled < kMost)) return {};  // NaN, too
+  auto digits = static_cast<std::uint64_t>(scaled);
+  const double rest = scaled - static_cast<double>(digits);
+  if (std::abs(rest - 0.5) < kTie) return {};
+  digits += rest > 0.5;
+  const bool negative = value < 0 && digits > 0;
+  char text[24];
+  char* first = std::end(text);
+  for (int k = 0; k <= places || digits > 0; ++k, digits /= 10) {
+    if (k == places && k > 0) *--first = '.';
+    *--first = static_cast<char>('0' + digits % 10);
+  }
+  if (negative) *--first = '-';
+  return {first, std::end(text)};
+}
+
+}  // namespace
+
 std::string fixedPlaces(double value, int places) {
-  std::string text = fmt::format("{:.{}f}", value, places);
+  std::string text = clearlyFixed(value, places);
+  if (!text.empty()) return text;
+  text = fmt::format("{:.{}f}", value, places);
   const bool zero = text.find_first_not_of("-0.") == std::string::npos;
   if (zero && text.front() == '-') text.erase(0, 1);
   return text;

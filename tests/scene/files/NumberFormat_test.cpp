@@ -1,8 +1,13 @@
 #include "libperception/scene/files/NumberFormat.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <limits>
+#include <random>
+#include <string>
+#include <vector>
 
 namespace perception {
 namespace {
@@ -12,6 +17,29 @@ TEST(NumberFormat, ZeroHasNoSign) {
   EXPECT_EQ(fixedPlaces(-0.0, 2), "0.00");
   EXPECT_EQ(fixedPlaces(-0.00006, 4), "-0.0001");
   EXPECT_EQ(fixedPlaces(-10.0, 1), "-10.0");
+}
+
+TEST(NumberFormat, RoundsAsExactArithmeticDoes) {
+  const auto exact = [](double value, int places) {
+    std::string text = fmt::format("{:.{}f}", value, places);
+    if (text.find_first_not_of("-0.") == std::string::npos && text[0] == '-') text.erase(0, 1);
+    return text;
+  };
+  std::vector<double> values = {0,     0.5,  1.5,  2.5,    0.125,   1.005,
+                                2.675, 0.45, 1e-7, 9.9995, 9.99951, 99999.9999999,
+                                1e9,   1e10, 1e15, 1e300,  4e-324};
+  std::mt19937 random(1);
+  std::uniform_real_distribution<double> exponent(-8, 12), factor(1, 10);
+  for (int k = 0; k < 20000; ++k) values.push_back(factor(random) * std::pow(10, exponent(random)));
+  for (int k = 0; k < 20000; ++k) {  // near ties
+    const double tie = (std::floor(1e4 * factor(random)) + 0.5) / 1000;
+    values.push_back(tie), values.push_back(std::nextafter(tie, 0));
+  }
+  for (const double value : values)
+    for (int places = 0; places <= 8; ++places)
+      for (const double v : {value, -value}) EXPECT_EQ(fixedPlaces(v, places), exact(v, places));
+  EXPECT_EQ(fixedPlaces(std::numeric_limits<double>::infinity(), 3), "inf");
+  EXPECT_EQ(fixedPlaces(std::numeric_limits<double>::quiet_NaN(), 3), "nan");
 }
 
 TEST(NumberFormat, SecondsAreExactToTheNanosecond) {
