@@ -155,6 +155,7 @@ void ClusterDescriber::describeEdges(Descriptor& d) {
 void ClusterDescriber::describeOutline(Descriptor& d) const {
   const std::size_t n = x_.size();
   std::vector<float> heights;
+  heights.reserve(kSpreadSample);
   for (std::size_t i = 0; i < n; i += strideOf(n, kSpreadSample)) heights.push_back(h_[i]);
   const float bottom = quantile(heights, 0.01), top = quantile(heights, 0.99);
   const float height = std::max(top - bottom, 0.05f);
@@ -210,24 +211,24 @@ void ClusterDescriber::describeSpread(Descriptor& d) const {
 /// Share of the least eigenvalue of the returns in cubes of 0.4 m: 0 for planes, 1/3 for leaves.
 void ClusterDescriber::describeRoughness(Descriptor& d) const {
   constexpr float kPerMeter = 2.5f;
-  constexpr double kLeast = 5;  // returns in a cube
-  thread_local std::vector<std::pair<std::uint32_t, std::uint32_t>> cube_of;
+  constexpr double kLeast = 5;                      // returns in a cube
+  thread_local std::vector<std::uint64_t> cube_of;  // before the index of each return
   cube_of.clear();
   const auto cell = [&](float v, float origin) {
-    return static_cast<std::uint32_t>(static_cast<int>((v - origin) * kPerMeter) + 512) & 1023u;
+    return static_cast<std::uint64_t>(static_cast<int>((v - origin) * kPerMeter) + 512) & 1023u;
   };
   for (std::size_t i = 0; i < x_.size(); i += strideOf(x_.size(), kRoughnessSample))
-    cube_of.emplace_back(
-        cell(x_[i], x_[0] - 100) << 20 | cell(y_[i], y_[0] - 100) << 10 | cell(z_[i], z_[0] - 100),
-        static_cast<std::uint32_t>(i));
+    cube_of.push_back(cell(x_[i], x_[0] - 100) << 52 | cell(y_[i], y_[0] - 100) << 42 |
+                      cell(z_[i], z_[0] - 100) << 32 | i);
   std::sort(cube_of.begin(), cube_of.end());
   double least = 0, all = 0;
   for (std::size_t begin = 0; begin < cube_of.size();) {
     Moments moments;
     std::size_t end = begin;
-    const std::size_t first = cube_of[begin].second;
-    for (; end < cube_of.size() && cube_of[end].first == cube_of[begin].first; ++end) {
-      const std::size_t i = cube_of[end].second;
+    const auto returnOf = [](std::uint64_t v) { return static_cast<std::uint32_t>(v); };
+    const std::size_t first = returnOf(cube_of[begin]);
+    for (; end < cube_of.size() && cube_of[end] >> 32 == cube_of[begin] >> 32; ++end) {
+      const std::size_t i = returnOf(cube_of[end]);
       moments.add(x_[i] - x_[first], y_[i] - y_[first], z_[i] - z_[first]);
     }
     begin = end;

@@ -6,6 +6,7 @@
 
 #include "libperception/lidar/LidarDetections.h"
 #include "libperception/lidar/segments/DirectionCells.h"
+#include "libperception/simd/RawVector.h"
 
 namespace perception {
 
@@ -95,18 +96,19 @@ class ClusterDescriber {
 
   const LidarDetections& found_;
   const DirectionCells& cells_;
-  std::vector<float> dx_, dy_, dz_;  ///< [m] of the obstacles from the sensor
-  std::vector<float> intensity_;     ///< rank among the scan's obstacles, [0, 1]; empty: none
-  std::vector<DirectionCells::Place> place_;  ///< of the obstacles
+  RawVector<float> dx_, dy_, dz_;  ///< [m] of the obstacles from the sensor
+  RawVector<float> intensity_;     ///< rank among the scan's obstacles, [0, 1]; empty: none
+  RawVector<DirectionCells::Place> place_;  ///< of the obstacles
   /// Obstacles by cell of the plane.
-  std::vector<float> sorted_x_, sorted_y_;   ///< [m] from the sensor
-  std::vector<std::int32_t> sorted_mark_;    ///< last cluster that it was a member of
-  std::vector<std::uint32_t> rank_, start_;  ///< of each obstacle; first of each cell
+  RawVector<float> sorted_x_, sorted_y_;   ///< [m] from the sensor
+  std::vector<std::int32_t> sorted_mark_;  ///< last cluster that it was a member of
+  RawVector<std::uint32_t> rank_;          ///< of each obstacle
+  std::vector<std::uint32_t> start_;       ///< first of each cell
   int columns_ = 0, rows_ = 0;
   float x0_ = 0, y0_ = 0;  ///< [m] corner of the plane's cells
   std::int32_t cluster_ = 0;
   /// The members: offset from the sensor and height above ground [m].
-  std::vector<float> x_, y_, z_, h_;
+  RawVector<float> x_, y_, z_, h_;
   float along_x_ = 1, along_y_ = 0;  ///< direction of the longer side
 };
 

@@ -2,11 +2,13 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <limits>
 #include <numeric>
 #include <utility>
 
 #include "libperception/lidar/description/ClusterDescriptor.h"
 #include "libperception/lidar/description/DescriptorParts.h"
+#include "libperception/simd/Dispatch.h"
 #include "libperception/simd/Vector8.h"
 
 namespace perception {
@@ -46,6 +48,29 @@ void addCells(const CellCounts& n, float range, Descriptor& d) {
   at(d, Feature::kCut) = static_cast<float>(n.cut) / static_cast<float>(2 * n.rows);
 }
 
+constexpr std::int32_t kIntensitySteps = 1024;  // of intensities
+
+/// Without branches, so that the compiler vectorizes them: steps from the least intensity on, the
+/// first of what is not finite; cells of the plane, row by row.
+PERCEPTION_WIDEST void findIntensitySteps(const float* __restrict raw, std::size_t count, float low,
+                                          float size, std::int32_t* __restrict step) {
+  constexpr float kFinite = std::numeric_limits<float>::max();
+  for (std::size_t k = 0; k < count; ++k) {
+    const float share = std::abs(raw[k]) <= kFinite ? (raw[k] - low) / size : 0;
+    step[k] = std::min(kIntensitySteps - 1, static_cast<std::int32_t>(share * kIntensitySteps));
+  }
+}
+PERCEPTION_WIDEST void findPlaneCells(const float* __restrict x, const float* __restrict y,
+                                      std::size_t count, float x0, float y0, int columns, int rows,
+                                      std::uint32_t* __restrict cell) {
+  for (std::size_t k = 0; k < count; ++k) {
+    const int c = static_cast<int>((x[k] - x0) / kPlaneCell),
+              r = static_cast<int>((y[k] - y0) / kPlaneCell);
+    cell[k] =
+        static_cast<std::uint32_t>(std::min(r, rows - 1) * columns + std::min(c, columns - 1));
+  }
+}
+
 }  // namespace
 
 /// Mid-rank among the obstacles, in 1024 steps from the least to the greatest: what a unit calls
@@ -53,7 +78,7 @@ void addCells(const CellCounts& n, float range, Descriptor& d) {
 void ClusterDescriber::rankIntensities(const LidarCloud& cloud) {
   const std::size_t n = found_.obstacles.size();
   if (cloud.intensity.size() != cloud.size() || n == 0) return;
-  std::vector<float> raw(n);
+  RawVector<float> raw(n);
   Interval range;
   for (std::size_t k = 0; k < n; ++k) {
     raw[k] = cloud.intensity[found_.points.source[found_.obstacles[k]]];
@@ -61,19 +86,15 @@ void ClusterDescriber::rankIntensities(const LidarCloud& cloud) {
   }
   if (range.size() <= 0) return;
   intensity_.resize(n);
-  constexpr std::int32_t kSteps = 1024;
-  std::array<std::uint32_t, static_cast<std::size_t>(kSteps) + 1> below{};
-  std::vector<std::int32_t> step(n);
-  for (std::size_t k = 0; k < n; ++k) {
-    const float share = std::isfinite(raw[k]) ? (raw[k] - range.low) / range.size() : 0;
-    step[k] = std::min(kSteps - 1, static_cast<std::int32_t>(share * kSteps));
-    ++below[static_cast<std::size_t>(step[k]) + 1];
-  }
+  std::array<std::uint32_t, static_cast<std::size_t>(kIntensitySteps) + 1> below{};
+  RawVector<std::int32_t> step(n);
+  findIntensitySteps(raw.data(), n, range.low, range.size(), step.data());
+  for (const std::int32_t s : step) ++below[static_cast<std::size_t>(s) + 1];
   std::partial_sum(below.begin(), below.end(), below.begin());
-  for (std::size_t k = 0; k < n; ++k) {
-    const auto s = static_cast<std::size_t>(step[k]);
-    intensity_[k] = 0.5f * static_cast<float>(below[s] + below[s + 1]) / static_cast<float>(n);
-  }
+  std::array<float, static_cast<std::size_t>(kIntensitySteps)> rank;
+  for (std::size_t s = 0; s < rank.size(); ++s)
+    rank[s] = 0.5f * static_cast<float>(below[s] + below[s + 1]) / static_cast<float>(n);
+  for (std::size_t k = 0; k < n; ++k) intensity_[k] = rank[static_cast<std::size_t>(step[k])];
 }
 
 void ClusterDescriber::sortByPlace() {
@@ -83,18 +104,10 @@ void ClusterDescriber::sortByPlace() {
   x0_ = x.low, y0_ = y.low;
   columns_ = n ? static_cast<int>(x.size() / kPlaneCell) + 1 : 0;
   rows_ = n ? static_cast<int>(y.size() / kPlaneCell) + 1 : 0;
-  const auto cell = [&](std::size_t k) {
-    const int c = static_cast<int>((dx_[k] - x0_) / kPlaneCell),
-              r = static_cast<int>((dy_[k] - y0_) / kPlaneCell);
-    return static_cast<std::size_t>(std::min(r, rows_ - 1)) * static_cast<std::size_t>(columns_) +
-           static_cast<std::size_t>(std::min(c, columns_ - 1));
-  };
   start_.assign(static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_) + 1, 0);
   rank_.resize(n);  // first the cell
-  for (std::size_t k = 0; k < n; ++k) {
-    rank_[k] = static_cast<std::uint32_t>(cell(k));
-    ++start_[rank_[k] + 1];
-  }
+  findPlaneCells(dx_.data(), dy_.data(), n, x0_, y0_, columns_, rows_, rank_.data());
+  for (const std::uint32_t cell : rank_) ++start_[cell + 1];
   std::partial_sum(start_.begin(), start_.end(), start_.begin());
   std::vector<std::uint32_t> next(start_.begin(), start_.end() - 1);
   sorted_x_.resize(n), sorted_y_.resize(n);
@@ -119,18 +132,19 @@ void ClusterDescriber::describeDirections(const std::vector<std::uint32_t>& memb
     if (c < -DirectionCells::kColumns / 2) c += DirectionCells::kColumns;
     return c;
   };
-  for (const std::uint32_t k : members) {
-    first_row = std::min<int>(first_row, place_[k].row);
-    last_row = std::max<int>(last_row, place_[k].row);
-    first_column = std::min(first_column, columnOf(k));
-    last_column = std::max(last_column, columnOf(k));
+  thread_local RawVector<int> column_of;  // of each member
+  column_of.resize(members.size());
+  for (std::size_t i = 0; i < members.size(); ++i) {
+    const int row = place_[members[i]].row, column = column_of[i] = columnOf(members[i]);
+    first_row = std::min(first_row, row), last_row = std::max(last_row, row);
+    first_column = std::min(first_column, column), last_column = std::max(last_column, column);
   }
   const auto width = static_cast<std::size_t>(last_column - first_column + 1);
   std::vector<Row> rows(static_cast<std::size_t>(last_row - first_row + 1));
   std::vector<std::uint8_t> mine(rows.size() * width, 0), column_hit(width, 0);
-  for (const std::uint32_t k : members) {
-    const int column = columnOf(k);
-    const auto r = static_cast<std::size_t>(place_[k].row - first_row);
+  for (std::size_t i = 0; i < members.size(); ++i) {
+    const int column = column_of[i];
+    const auto r = static_cast<std::size_t>(place_[members[i]].row - first_row);
     const auto c = static_cast<std::size_t>(column - first_column);
     Row& row = rows[r];
     row.low = std::min(row.low, column), row.high = std::max(row.high, column);
@@ -165,6 +179,7 @@ void ClusterDescriber::describeIntensity(const std::vector<std::uint32_t>& membe
     return;
   }
   std::vector<float> values;
+  values.reserve(kIntensitySample);
   const std::size_t stride = 1 + (members.size() - 1) / kIntensitySample;
   for (std::size_t i = 0; i < members.size(); i += stride) values.push_back(intensity_[members[i]]);
   const auto n = static_cast<float>(values.size());
@@ -215,9 +230,13 @@ float nearestOf(const float* x, const float* y, const std::int32_t* mark, std::s
 
 /// Horizontal distance [m] to the nearest obstacle that is no member; at most `within`.
 float ClusterDescriber::nearestOther(std::uint32_t i, float within) const {
+  constexpr float kRounding = 1e-3f;  // [m] more than floats round
   const float x = dx_[i], y = dy_[i];
   const int c = std::min(static_cast<int>((x - x0_) / kPlaneCell), columns_ - 1),
             r = std::min(static_cast<int>((y - y0_) / kPlaneCell), rows_ - 1);
+  // From the borders of its cell [m].
+  const float left = x - x0_ - static_cast<float>(c) * kPlaneCell, right = kPlaneCell - left;
+  const float below = y - y0_ - static_cast<float>(r) * kPlaneCell, above = kPlaneCell - below;
   float best = within * within;
   const auto look = [&](int row, int first_column, int last_column) {
     first_column = std::max(first_column, 0), last_column = std::min(last_column, columns_ - 1);
@@ -225,23 +244,37 @@ float ClusterDescriber::nearestOther(std::uint32_t i, float within) const {
     const std::size_t cells = static_cast<std::size_t>(row) * static_cast<std::size_t>(columns_);
     const std::uint32_t first = start_[cells + static_cast<std::size_t>(first_column)],
                         end = start_[cells + static_cast<std::size_t>(last_column) + 1];
-    best = nearestOf(sorted_x_.data() + first, sorted_y_.data() + first,
-                     sorted_mark_.data() + first, end - first, x, y, cluster_, best);
+    if (first < end)
+      best = nearestOf(sorted_x_.data() + first, sorted_y_.data() + first,
+                       sorted_mark_.data() + first, end - first, x, y, cluster_, best);
   };
-  for (int row = r - 1; row <= r + 1; ++row) look(row, c - 1, c + 1);
-  // Beside them, then row by row away from them, as far as something nearer may be.
-  for (int away = 0;; ++away) {
-    const float between = static_cast<float>(std::max(away - 1, 0)) * kPlaneCell;
-    if (between * between >= best) break;
-    const auto aside = 1 + static_cast<int>(std::sqrt(best - between * between) / kPlaneCell);
-    for (const int row : {r - away, r + away}) {
-      if (away > 1) {
-        look(row, c - aside, c + aside);
-      } else if (aside > 1) {
-        look(row, c - aside, c - 2), look(row, c + 2, c + aside);
-      }
-      if (away == 0) break;
+  // Cells from its own to the one in which something nearer may be, past a border.
+  const auto cellsPast = [](float reach, float border) {
+    return reach > border ? 1 + static_cast<int>((reach - border) / kPlaneCell) : 0;
+  };
+  // What may be nearer in a row that begins `between` [m] away: in its middle three cells, or
+  // beside those.
+  const auto lookIn = [&](int row, float between, bool middle, bool beside) {
+    const float least = std::max(between - kRounding, 0.0f);
+    if (least * least >= best) return false;
+    const float reach = std::sqrt(best - least * least) + kRounding;
+    const int before = cellsPast(reach, left), after = cellsPast(reach, right);
+    if (middle && beside) {
+      look(row, c - before, c + after);
+    } else if (middle) {
+      look(row, c - std::min(before, 1), c + std::min(after, 1));
+    } else {
+      look(row, c - before, c - 2), look(row, c + 2, c + after);
     }
+    return true;
+  };
+  lookIn(r, 0, true, false), lookIn(r - 1, below, true, false), lookIn(r + 1, above, true, false);
+  lookIn(r, 0, false, true);
+  for (int away = 1;; ++away) {
+    const float between = static_cast<float>(away - 1) * kPlaneCell;
+    const bool any_below = lookIn(r - away, between + below, away > 1, true),
+               any_above = lookIn(r + away, between + above, away > 1, true);
+    if (!any_below && !any_above) break;
   }
   return std::sqrt(best);
 }
