@@ -56,7 +56,6 @@ struct Columns {
   PlaceBox box;
   double low = 0, high = 0;   ///< [rad] azimuth; low in [0, 2 pi)
   float bottom = 0, top = 0;  ///< [m] above the ground
-  float mostly_above = 0;     ///< [m] most of its returns are higher
   double nearest = 0;         ///< [m] horizontal distance of the nearest return from the sensor
   End at_low, at_high;
 };
@@ -104,32 +103,38 @@ class SurfaceFinder {
   Vector2 placeOf(std::uint32_t i) const { return {places_.x[i], places_.y[i]}; }
 
   Columns columnsOf(const ReturnGroup& group) const {
-    std::vector<double> azimuth;
-    std::vector<float> heights;
-    azimuth.reserve(group.size()), heights.reserve(group.size());
-    const auto first = static_cast<double>(azimuth_[group.front()]);
-    Columns columns;
-    columns.bottom = columns.top = places_.height[group.front()];
+    constexpr float kFar = std::numeric_limits<float>::infinity();
+    float x0 = kFar, x1 = -kFar, y0 = kFar, y1 = -kFar, bottom = kFar, top = -kFar, least = kFar,
+          most = -kFar;
     double nearest2 = std::numeric_limits<double>::infinity();
     for (const std::uint32_t i : group) {
-      const double off = static_cast<double>(azimuth_[i]) - first;  // without a jump at +-pi:
-      azimuth.push_back(first + (std::abs(off) < kPi ? off : off - std::copysign(kTwoPi, off)));
-      heights.push_back(places_.height[i]);
-      columns.bottom = std::min(columns.bottom, places_.height[i]);
-      columns.top = std::max(columns.top, places_.height[i]);
-      columns.box.add(placeOf(i));
+      const float x = places_.x[i], y = places_.y[i], height = places_.height[i];
+      x0 = std::min(x0, x), x1 = std::max(x1, x), y0 = std::min(y0, y), y1 = std::max(y1, y);
+      bottom = std::min(bottom, height), top = std::max(top, height);
+      least = std::min(least, azimuth_[i]), most = std::max(most, azimuth_[i]);
       nearest2 = std::min(nearest2, (placeOf(i) - sensor_.head<2>()).squaredNorm());
     }
-    columns.nearest = std::sqrt(nearest2);
-    const auto side =
-        static_cast<std::ptrdiff_t>(kStep.side_share * static_cast<double>(heights.size()));
-    std::nth_element(heights.begin(), heights.begin() + side, heights.end());
-    columns.mostly_above = heights[static_cast<std::size_t>(side)];
-    const auto [low, high] = std::minmax_element(azimuth.begin(), azimuth.end());
+    Columns columns;
+    columns.box.add({x0, y0}), columns.box.add({x1, y1});
+    columns.bottom = bottom, columns.top = top, columns.nearest = std::sqrt(nearest2);
+    const auto first = static_cast<double>(azimuth_[group.front()]);
+    const auto azimuthOf = [&](std::uint32_t i) {  // without a jump at +-pi
+      const double off = static_cast<double>(azimuth_[i]) - first;
+      return first + (std::abs(off) < kPi ? off : off - std::copysign(kTwoPi, off));
+    };
+    auto low = static_cast<double>(least), high = static_cast<double>(most);
+    // Away from zero the above is exact, and within half a circle it is the float itself.
+    constexpr float kExact = 1e-6f;
+    const bool same = (least > kExact || most < -kExact) && high - low < kPi;
+    if (!same) low = high = first;
+    for (std::size_t k = 0; !same && k < group.size(); ++k)
+      low = std::min(low, azimuthOf(group[k])), high = std::max(high, azimuthOf(group[k]));
+    const float beside = same ? static_cast<float>(kSecond * step_) + 1e-5f : kFar;
     Mean at_low, beside_low, at_high, beside_high;
-    for (std::size_t k = 0; k < group.size(); ++k) {
-      const double from_low = azimuth[k] - *low, from_high = *high - azimuth[k];
-      const Vector2 place = placeOf(group[k]);
+    for (const std::uint32_t i : group) {
+      if (azimuth_[i] > least + beside && azimuth_[i] < most - beside) continue;
+      const double azimuth = azimuthOf(i), from_low = azimuth - low, from_high = high - azimuth;
+      const Vector2 place = placeOf(i);
       if (from_low <= kEdge * step_) {
         at_low.add(place);
       } else if (from_low < kSecond * step_) {
@@ -143,9 +148,19 @@ class SurfaceFinder {
     }
     columns.at_low = {*at_low.value(), beside_low.value()};
     columns.at_high = {*at_high.value(), beside_high.value()};
-    const double turn = *low < 0 ? kTwoPi : 0;
-    columns.low = *low + turn, columns.high = *high + turn;
+    const double turn = low < 0 ? kTwoPi : 0;
+    columns.low = low + turn, columns.high = high + turn;
     return columns;
+  }
+
+  /// Most returns of a group are higher [m above the ground].
+  float mostlyAbove(const ReturnGroup& group) const {
+    std::vector<float> heights(group.size());
+    for (std::size_t k = 0; k < group.size(); ++k) heights[k] = places_.height[group[k]];
+    const auto side =
+        static_cast<std::ptrdiff_t>(kStep.side_share * static_cast<double>(heights.size()));
+    std::nth_element(heights.begin(), heights.begin() + side, heights.end());
+    return heights[static_cast<std::size_t>(side)];
   }
 
   /// Pairs with no room for a column between them.
@@ -212,7 +227,8 @@ class SurfaceFinder {
   /// The nearest group before and below a cabin or a roof.
   std::optional<std::uint32_t> bodyBelow(std::uint32_t upper) const {
     const Columns& u = columns_[upper];
-    const float bottom = u.mostly_above, thickness = u.top - bottom;
+    if (u.top < kStep.lowest) return std::nullopt;
+    const float bottom = mostlyAbove(groups_[upper]), thickness = u.top - bottom;
     if (bottom < kStep.lowest || thickness > kStep.thickness) return std::nullopt;
     if (thickness > kStep.flat && widthOf(u) < kStep.width) return std::nullopt;
     std::vector<std::uint32_t> below;
