@@ -13,36 +13,57 @@ namespace perception {
 
 namespace {
 
-/// Points of a cluster relative to the first of them.
-PointFours foursOf(const std::vector<Vector2>& points) {
-  return {points.size(), [&](std::size_t i) {
-            const Vector2 d = points[i] - points.front();
-            return std::make_pair(static_cast<float>(d.x()), static_cast<float>(d.y()));
-          }};
+/// Points of a cluster relative to the first of them [m].
+struct FittedPoints {
+  explicit FittedPoints(const std::vector<Vector2>& places)
+      : points(places.size(), [&](std::size_t i) {
+          const Vector2 d = places[i] - places.front();
+          return std::make_pair(static_cast<float>(d.x()), static_cast<float>(d.y()));
+        }) {
+    Vector2 sum = Vector2::Zero();
+    for (const Vector2& place : places) sum += place - places.front();
+    const auto count = static_cast<double>(places.size());
+    mean_x = static_cast<float>(sum.x() / count), mean_y = static_cast<float>(sum.y() / count);
+  }
+  PointFours points;
+  float mean_x, mean_y;
+};
+
+/// That of two bounds which points are nearer to by the sum of squares. That is the one on the side
+/// of their `mean`, but where rounding may decide.
+template <class Float>
+PERCEPTION_LANES Float nearerBound(const PointFours& points, const Float* values, const Float& mean,
+                                   const Float& low, const Float& high) {
+  using Directions = LaneDirections<Float>;
+  constexpr float kShare = 1e-3f, kLeast = 1e-4f;  // [-], [m] far more than rounding
+  const Float aside = mean - (low + high) * 0.5f;
+  const IntsOf<Float> unsure = magnitude(aside) <= (high - low) * kShare + kLeast;
+  bool sure = true;
+  for (std::size_t k = 0; k < Directions::kCount; ++k) sure = sure && unsure[4 * k] == 0;
+  if (sure) return aside < 0 ? low : high;
+  Float to_low{}, to_high{};
+  for (std::size_t i = 0; i < points.groups; ++i) {
+    const Float w = Directions::same(points.weight[i]);
+    const Float v0 = values[i] - low, v1 = high - values[i];
+    to_low += w * v0 * v0, to_high += w * v1 * v1;
+  }
+  const auto sum = [](const Float4& v) { return sumOf(v); };
+  return Directions::reduced(to_low, sum) < Directions::reduced(to_high, sum) ? low : high;
 }
 
 /// Of each direction the sum over the points of 1 / distance to the nearer of the two rectangle
 /// sides that the points lie along; at least `min_distance` [m].
 template <class Float>
-PERCEPTION_LANES void findCloseness(const PointFours& points, const float* cosines,
+PERCEPTION_LANES void findCloseness(const FittedPoints& fitted, const float* cosines,
                                     const float* sines, float min_distance, float* closeness) {
   using Directions = LaneDirections<Float>;
+  const PointFours& points = fitted.points;
   const TurnedPoints<Float> turned(points, cosines, sines);
-  Float to_low_a{}, to_high_a{}, to_low_b{}, to_high_b{};
-  for (std::size_t i = 0; i < points.groups; ++i) {
-    const Float w = Directions::same(points.weight[i]);
-    const Float a0 = turned.a[i] - turned.low_a, a1 = turned.high_a - turned.a[i];
-    const Float b0 = turned.b[i] - turned.low_b, b1 = turned.high_b - turned.b[i];
-    to_low_a += w * a0 * a0, to_high_a += w * a1 * a1;
-    to_low_b += w * b0 * b0, to_high_b += w * b1 * b1;
-  }
-  const auto sum = [](const Float4& v) { return sumOf(v); };
-  const auto nearer = [&](const Float& to_low, const Float& to_high, const Float& low,
-                          const Float& high) {
-    return Directions::reduced(to_low, sum) < Directions::reduced(to_high, sum) ? low : high;
-  };
-  const Float edge_a = nearer(to_low_a, to_high_a, turned.low_a, turned.high_a);
-  const Float edge_b = nearer(to_low_b, to_high_b, turned.low_b, turned.high_b);
+  const Float c = Directions::of(cosines), s = Directions::of(sines);
+  const Float mean_a = c * fitted.mean_x + s * fitted.mean_y,
+              mean_b = c * fitted.mean_y - s * fitted.mean_x;
+  const Float edge_a = nearerBound(points, turned.a, mean_a, turned.low_a, turned.high_a);
+  const Float edge_b = nearerBound(points, turned.b, mean_b, turned.low_b, turned.high_b);
   const Float floor = all<Float>(min_distance);
   Float sums{};
   for (std::size_t i = 0; i < points.groups; ++i) {
@@ -56,21 +77,21 @@ PERCEPTION_LANES void findCloseness(const PointFours& points, const float* cosin
 
 // Like PERCEPTION_WIDER, with vectors of the width of each target.
 PERCEPTION_TARGET("default")
-void findTwo(const PointFours& points, const float* cosines, const float* sines, float min_distance,
-             float* closeness) {
+void findTwo(const FittedPoints& points, const float* cosines, const float* sines,
+             float min_distance, float* closeness) {
   for (std::size_t k = 0; k < 2; ++k)
     findCloseness<Float4>(points, cosines + k, sines + k, min_distance, closeness + k);
 }
 #if PERCEPTION_HAS_WIDER
 PERCEPTION_TARGET("avx2")
-void findTwo(const PointFours& points, const float* cosines, const float* sines, float min_distance,
-             float* closeness) {
+void findTwo(const FittedPoints& points, const float* cosines, const float* sines,
+             float min_distance, float* closeness) {
   findCloseness<Float8>(points, cosines, sines, min_distance, closeness);
 }
 #endif
 
 /// Of two directions [rad].
-std::array<double, 2> closenessOf(const PointFours& points, const std::array<double, 2>& yaw,
+std::array<double, 2> closenessOf(const FittedPoints& points, const std::array<double, 2>& yaw,
                                   const BoxParams& params) {
   std::array<float, 2> cosine, sine, closeness;
   for (std::size_t k = 0; k < 2; ++k)
@@ -87,7 +108,7 @@ struct Direction {
 };
 
 Direction bestDirection(const std::vector<Vector2>& places, const BoxParams& params) {
-  const PointFours points = foursOf(places);
+  const FittedPoints points(places);
   const int steps = std::max(2, static_cast<int>(std::lround(kPi / 2 / params.step)));
   const double step = kPi / 2 / steps;
   std::vector<double> score(static_cast<std::size_t>(steps) + 1);  // they come by two
@@ -121,6 +142,7 @@ std::vector<Vector2> evenly(const std::vector<Vector2>& points, int limit) {
   constexpr int kMost = static_cast<int>(4 * TurnedPoints<Float8>::kMost);
   const std::size_t stride =
       1 + (points.size() - 1) / static_cast<std::size_t>(std::min(limit, kMost));
+  used.reserve((points.size() - 1) / stride + 1);
   for (std::size_t i = 0; i < points.size(); i += stride) used.push_back(points[i]);
   return used;
 }
@@ -131,6 +153,7 @@ std::vector<Vector2> withoutOutliers(const std::vector<Vector2>& points, double 
                                      const BoxParams& params) {
   const double c = std::cos(yaw), s = std::sin(yaw);
   std::vector<double> along, across;
+  along.reserve(points.size()), across.reserve(points.size());
   for (const Vector2& p : points)
     along.push_back(c * p.x() + s * p.y()), across.push_back(c * p.y() - s * p.x());
   // Bounds without the few lowest and highest values that a gap separates from the rest.
@@ -154,6 +177,7 @@ std::vector<Vector2> withoutOutliers(const std::vector<Vector2>& points, double 
   const auto [a0, a1] = bounds(along);
   const auto [b0, b1] = bounds(across);
   std::vector<Vector2> kept;
+  kept.reserve(points.size());
   for (std::size_t i = 0; i < points.size(); ++i)
     if (along[i] >= a0 && along[i] <= a1 && across[i] >= b0 && across[i] <= b1)
       kept.push_back(points[i]);
