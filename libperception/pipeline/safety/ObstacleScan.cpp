@@ -42,8 +42,15 @@ class Doubter {
         weighted_(cloud != nullptr && !cloud->trust.empty()),
         caused_(frame.causes.any()) {}
 
-  /// Appends return `i`, a hit at that place in the world.
-  void weigh(std::size_t i, const Vector2& place, ObstacleScan& obstacles) const {
+  /// Makes room for as many hits more.
+  void makeRoom(std::size_t hits, ObstacleScan& obstacles) const {
+    const std::size_t all = obstacles.dense.size() + hits;
+    if (weighted_) obstacles.scan.weights.resize(all);
+    obstacles.dense.resize(all), obstacles.doubted.resize(all);
+    if (caused_) obstacles.surface.resize(all), obstacles.solid.resize(all);
+  }
+  /// Sets hit `hit`: return `i`, at that place in the world.
+  void weigh(std::size_t i, const Vector2& place, std::size_t hit, ObstacleScan& obstacles) const {
     const float trust = weighted_ ? cloud_->trust[returns_.source[i]] : 1;
     const float shape = returns_.phantom.empty() ? 0 : returns_.phantom[i];
     const bool alone = shape == PlacedReturns::kNoCluster;
@@ -60,13 +67,13 @@ class Doubter {
     const float weight = 1 - held;
     const float lone = alone && solid < kWall ? static_cast<float>(cause) : 0;
     const float dense = weight * (1 - lone);
-    if (weighted_) obstacles.scan.weights.push_back(weight);
-    obstacles.dense.push_back(dense < kDoubted ? 0 : dense);
-    obstacles.doubted.push_back(doubt >= kDoubted);
+    if (weighted_) obstacles.scan.weights[hit] = weight;
+    obstacles.dense[hit] = dense < kDoubted ? 0 : dense;
+    obstacles.doubted[hit] = doubt >= kDoubted;
     if (!caused_) return;
-    obstacles.surface.push_back(dense < 1 && trust > 0 &&
-                                solid >= (in_wake ? kWallInWake : perhapsSurface(i)));
-    obstacles.solid.push_back(wall);
+    obstacles.surface[hit] =
+        dense < 1 && trust > 0 && solid >= (in_wake ? kWallInWake : perhapsSurface(i));
+    obstacles.solid[hit] = wall;
   }
 
  private:
@@ -125,8 +132,10 @@ ObstacleScan obstacleScanOf(const SensorFrame& frame, const PlacedReturns& retur
     }
     scan.hits.append(places, hits.data(), hit_count);
     scan.clear.append(places, clear.data(), clear_count);
+    const std::size_t before = obstacles.dense.size();
+    doubter.makeRoom(hit_count, obstacles);
     for (std::size_t k = 0; k < hit_count; ++k)
-      doubter.weigh(first + hits[k], {places.x[hits[k]], places.y[hits[k]]}, obstacles);
+      doubter.weigh(first + hits[k], {places.x[hits[k]], places.y[hits[k]]}, before + k, obstacles);
   }
   return obstacles;
 }
