@@ -280,7 +280,7 @@ class SurfaceFinder {
   const ReturnPlaces& places_;
   const std::vector<ReturnGroup>& groups_;
   const Vector3& sensor_;
-  const std::vector<float>& azimuth_;
+  const RawVector<float>& azimuth_;
   const double step_;  ///< [rad] 0: not known
   std::vector<Columns> columns_;
   std::vector<std::pair<float, std::uint32_t>> bodies_;     ///< [m] top; group

@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "libperception/core/Frames.h"
+#include "libperception/simd/RawVector.h"
 
 namespace perception {
 
@@ -17,7 +18,7 @@ using ReturnGroup = std::vector<std::uint32_t>;  ///< indices of returns, ascend
 struct ReturnDirections {
   /// `sensor`: z above the ground.
   ReturnDirections(const ReturnPlaces& places, const Vector3& sensor);
-  std::vector<float> azimuth, elevation;  ///< (-pi, pi]; above the horizon
+  RawVector<float> azimuth, elevation;  ///< (-pi, pi]; above the horizon
 };
 
 /// Step in azimuth between neighboring returns of one beam of a scanner [rad]: the median over

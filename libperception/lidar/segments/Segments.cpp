@@ -8,6 +8,7 @@
 
 #include "libperception/lidar/segments/GrazedSurfaces.h"
 #include "libperception/lidar/segments/SpaceLinkage.h"
+#include "libperception/simd/RawVector.h"
 
 namespace perception {
 namespace {
@@ -160,7 +161,7 @@ class SegmentFinder {
   const std::optional<Vector3>& sensor_;
   const LinkLength& link_;
   const double min_points_, max_size_;
-  std::vector<double> length_;  ///< [m] link of each return, at the first level's share of 1
+  RawVector<double> length_;  ///< [m] link of each return, at the first level's share of 1
   std::vector<Segment> segments_;
 };
 

@@ -9,6 +9,7 @@
 #include "libperception/lidar/segments/Forest.h"
 #include "libperception/lidar/segments/KeyNumbers.h"
 #include "libperception/simd/Dispatch.h"
+#include "libperception/simd/RawVector.h"
 #include "libperception/simd/Vector8.h"
 
 namespace perception {
@@ -267,7 +268,7 @@ class CubeLinkage {
   std::vector<std::uint32_t> cube_of_;       ///< of each return
   std::vector<std::uint32_t> first_cube_;    ///< of each block, and the end
   std::vector<std::uint32_t> first_return_;  ///< of each cube, and the end
-  std::vector<LinkedReturn> sorted_;         ///< cube by cube
+  RawVector<LinkedReturn> sorted_;           ///< cube by cube
   std::vector<Bounds> bounds_, block_bounds_;
   std::vector<char> uniform_;  ///< known to be, of each block
   Forest* groups_ = nullptr;
