@@ -10,6 +10,7 @@
 
 #include "libperception/doctor/MotionFindings.h"
 #include "libperception/doctor/SiteIni.h"
+#include "libperception/measurement/frames/NoReturns.h"
 #include "libperception/measurement/frames/ScanTimes.h"
 
 namespace perception {
@@ -52,6 +53,11 @@ void addOrder(Findings& out, const std::string& label, const SensorFacts& facts)
             fmt::format("returns lie more than {:g} s outside of {} of {} scans: other units or "
                         "another clock; perception-import leaves such times out",
                         kLongestScan, facts.timeless, facts.frames));
+  if (facts.no_returns > 0)
+    out.add(Weight::kFault, label,
+            fmt::format("{} points are no returns: they lie farther than {:g} m, or in many "
+                        "directions at the same farthest range; perception-import leaves such out",
+                        facts.no_returns, kFarthestReturn));
 }
 
 /// The sensor whose stamps are of another time than those of all others.

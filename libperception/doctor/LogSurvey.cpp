@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "libperception/core/math/Median.h"
+#include "libperception/measurement/frames/NoReturns.h"
 #include "libperception/measurement/frames/ScanTimes.h"
 #include "libperception/sensors/observations/Conversions.h"
 
@@ -183,6 +184,7 @@ void LogSurvey::lookAt(SensorFacts& facts, const SensorFrame& frame) {
       facts.planar = (facts.returns == 0 || facts.planar) && isOneLayer(*cloud);
     addCloud(facts, *cloud);
     facts.timeless += timesOutsideOf(*cloud);
+    facts.no_returns += noReturnsOf(*cloud).points.size();
     const GroundPlane plane = GroundEstimator(searchEverywhere()).update(frame);
     if (plane.measured) facts.planes.push_back(plane);
     if (!facts.planar) follow(facts, frame);

@@ -29,9 +29,10 @@ struct SensorFacts {
   Pose3 T_ego_sensor = Pose3::Identity();  ///< of the first frame
   bool pose_varies = false;                ///< over the log
   std::optional<Stamp> newest;
-  std::uint64_t backward = 0;  ///< frames with an earlier stamp than the newest before
-  double farthest_back = 0;    ///< [s] of these, at most
-  std::uint64_t timeless = 0;  ///< scans with times outside of them (ScanTimes.h)
+  std::uint64_t backward = 0;    ///< frames with an earlier stamp than the newest before
+  double farthest_back = 0;      ///< [s] of these, at most
+  std::uint64_t timeless = 0;    ///< scans with times outside of them (ScanTimes.h)
+  std::uint64_t no_returns = 0;  ///< points by NoReturns.h
 
   std::uint64_t returns = 0;                   ///< or boxes
   std::vector<std::uint64_t> ranges;           ///< number of returns by horizontal range, 1 m bins

@@ -9,7 +9,6 @@
 #include <opencv2/imgcodecs.hpp>
 
 #include "libperception/core/Error.h"
-#include "libperception/measurement/frames/ScanTimes.h"
 #include "libperception/sensors/frames/ToObservation.h"
 #include "libperception/sensors/images/CameraImages.h"
 #include "libperception/sensors/images/ImageFile.h"
@@ -94,14 +93,8 @@ void ImportLog::sensor(const std::string& label, Stamp stamp, const Pose3& T_ego
 }
 
 void ImportLog::uniqueSensor(const SensorFrame& frame) {
-  const auto* timed = std::get_if<LidarCloud>(&frame.data);
-  if (timed != nullptr && timesOutsideOf(*timed)) {
-    ++timeless_[frame.sensor];
-    SensorFrame timeless = frame;
-    std::get<LidarCloud>(timeless.data).time_offset.clear();
-    return writeSensor(timeless);
-  }
-  writeSensor(frame);
+  const auto mended = oddities_.mended(frame);
+  writeSensor(mended ? *mended : frame);
 }
 
 void ImportLog::writeSensor(const SensorFrame& frame) {
@@ -244,11 +237,7 @@ ImportResult ImportLog::close() {
     note(fmt::format(
         "{}: {} messages came twice, with the same content and stamp (within 20 ms): left out",
         label, count));
-  for (const auto& [label, count] : timeless_)
-    warn(
-        fmt::format("{}: returns lie more than {:g} s outside of {} of its scans: their times are "
-                    "not used",
-                    label, kLongestScan, count));
+  oddities_.tell(result_.notes, result_.warnings);
   log_.finish();
   if (has_truth_) {  // before the log has its name, so that a complete log has its truth
     std::vector<TruthObject> objects;

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "libperception/core/GroundTruth.h"
+#include "libperception/importers/ScanOddities.h"
 #include "libperception/importers/bags/DoubledMessages.h"
 #include "libperception/measurement/frames/SensorFrame.h"
 #include "libperception/sensors/rawlog/RawlogWriter.h"
@@ -86,7 +87,8 @@ class ImportLog {
   /// applies.
   void ego(Stamp stamp, const Pose3& T_world_ego, const PoseUncertainty& uncertainty = {0, 0, 0});
   void frame(Stamp stamp, std::int64_t number);
-  /// Doubled messages are left out and counted. Of clouds with timesOutsideOf() the times are.
+  /// Doubled messages are left out and counted. Scans are
+  /// mended (ScanOddities).
   void sensor(const SensorFrame& frame);
   /// The same of a frame that has no more than this. `T_ego_sensor` is the sensor's mounting.
   void sensor(const std::string& label, Stamp stamp, const Pose3& T_ego_sensor,
@@ -117,7 +119,8 @@ class ImportLog {
   void progress(std::int64_t done, std::int64_t total) const;
 
   /// Writes the truth and closes the log. Throws DataError (kNoInput) if every frame misses data or
-  /// no frame of the recording was wanted, OutputError.
+  /// no frame of the recording was wanted; if most scans of a lidar lie elsewhere (ScanOddities);
+  /// OutputError.
   ImportResult close();
 
  private:
@@ -135,7 +138,7 @@ class ImportLog {
   bool has_truth_ = false;
   bool any_wanted_ = false;
   DoubledMessages doubles_;
-  std::map<std::string, std::int64_t> timeless_;  ///< by sensor: scans without their times
+  ScanOddities oddities_;
   std::optional<std::pair<std::int64_t, std::int64_t>>
       numbers_;  ///< least, greatest frame there is
   std::optional<Stamp> first_stamp_;

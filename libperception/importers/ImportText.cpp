@@ -69,7 +69,9 @@ std::int64_t TextRow::frame(std::size_t i) const {
 }
 
 Eigen::Matrix<double, 3, 4> TextRow::matrix34(std::size_t first) const {
-  expect(size() == first + 12, fmt::format("{}", first + 12));
+  const bool whole = size() == first + 16 && real(first + 12) == 0 && real(first + 13) == 0 &&
+                     real(first + 14) == 0 && real(first + 15) == 1;
+  expect(size() == first + 12 || whole, fmt::format("{}", first + 12));
   Eigen::Matrix<double, 3, 4> m;
   for (std::size_t i = 0; i < 12; ++i) {
     m(static_cast<Eigen::Index>(i / 4), static_cast<Eigen::Index>(i % 4)) = real(first + i);

@@ -26,12 +26,12 @@ class TextRow {
   std::int64_t frame(std::size_t i) const;  ///< an integer of at least 0
 
   // Numbers in a row, from field `first` to the end of the line.
-  /// A pose of 12 numbers, 3x4 row-major; rounding errors are corrected, other matrices that are
-  /// not rotations fail.
+  /// A pose of 12 numbers, 3x4 row-major, or of 16 whose last row is 0 0 0 1; rounding errors are
+  /// corrected, other matrices that are not rotations fail.
   Pose3 pose34(std::size_t first) const;
   /// A rotation of 9 numbers, row-major.
   Pose3 rotation33(std::size_t first) const;
-  /// 12 numbers unchanged, 3x4 row-major.
+  /// The 3x4 numbers of the same, unchanged.
   Eigen::Matrix<double, 3, 4> matrix34(std::size_t first) const;
 
   void expect(bool holds, const std::string& expected) const;

@@ -36,6 +36,12 @@ const std::vector<DeviceKind>& deviceKinds() {
        6699, false, 150, &makeRs16Decoder, &makeRs16Encoder, 7788},
       {"rs32", "RoboSense RS-LiDAR-32; file: beams of the unit, or a DIFOP packet", true, kUdp,
        6699, false, 200, &makeRs32Decoder, &makeRs32Encoder, 7788},
+      {"helios16", "RoboSense Helios-16P; file: beams of the unit, or a DIFOP packet", true, kUdp,
+       6699, false, 150, &makeHelios16Decoder, &makeHelios16Encoder, 7788},
+      {"helios32", "RoboSense Helios of 32 beams; file: as helios16", true, kUdp, 6699, false, 150,
+       &makeHelios32Decoder, &makeHelios32Encoder, 7788},
+      {"bpearl", "RoboSense Bpearl; file: beams of the unit, or a DIFOP packet", true, kUdp, 6699,
+       false, 30, &makeBpearlDecoder, &makeBpearlEncoder, 7788},
   };
   return kinds;
 }

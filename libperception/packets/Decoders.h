@@ -17,17 +17,20 @@ std::unique_ptr<PacketDecoder> makeVelodyneDecoder();
 std::unique_ptr<PacketDecoder> makePandar40pDecoder(const std::string& file);
 std::unique_ptr<PacketDecoder> makeXt32Decoder(const std::string& file);
 
-/// RoboSense RS-LiDAR-16 and RS-LiDAR-32: packets of returns (MSOP, 1248 bytes), and of the device
-/// (DIFOP, the same size), from which the angles of the unit's beams are taken. `file`: beams of
-/// the unit, or one of its DIFOP packets; empty: the nominal ones of the RS-LiDAR-16, none of the
-/// RS-LiDAR-32, whose returns are left out until a DIFOP packet came. Big-endian. Distances of 5
-/// mm, as the firmware of today sends them; older ones of the RS-LiDAR-16 sent 10 mm and do not say
-/// so. Stamp: of the first firing, since 1970. No packet numbers are sent: what is lost is not
-/// seen. Source: the layouts of the manuals and of the maker's public driver, written down without
-/// these at hand and not tried on a recording. Other models of the maker have other layouts:
-/// refused.
+/// RoboSense RS-LiDAR-16 and -32, Helios of 16 and 32 beams, and Bpearl: packets of returns (MSOP,
+/// 1248 bytes), and of the device (DIFOP, the same size), from which the angles of the unit's beams
+/// are taken. `file`: beams of the unit, or one of its DIFOP packets; empty: the nominal ones of
+/// the RS-LiDAR-16, none of the others, whose returns are left out until a DIFOP packet came.
+/// Big-endian. Distances of 5 mm (Helios: 2.5 mm), as the firmware of today sends them; older ones
+/// of the RS-LiDAR-16 sent 10 mm and do not say so. A Bpearl of version 4 is refused. Stamp: of the
+/// first firing, since 1970. No packet numbers are sent: what is lost is not seen. Source: the
+/// layouts of the manuals and of the maker's public driver, written down without these at hand and
+/// not tried on a recording. Other models of the maker have other layouts: refused.
 std::unique_ptr<PacketDecoder> makeRs16Decoder(const std::string& file);
 std::unique_ptr<PacketDecoder> makeRs32Decoder(const std::string& file);
+std::unique_ptr<PacketDecoder> makeHelios16Decoder(const std::string& file);
+std::unique_ptr<PacketDecoder> makeHelios32Decoder(const std::string& file);
+std::unique_ptr<PacketDecoder> makeBpearlDecoder(const std::string& file);
 
 /// Ouster, with its metadata file. Stamp: by the sensor's timestamp mode. See Ouster.h.
 std::unique_ptr<PacketDecoder> makeOusterDecoder(const std::string& file);

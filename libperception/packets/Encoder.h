@@ -37,6 +37,9 @@ std::unique_ptr<PacketEncoder> makeXt32Encoder(const std::string& file);
 /// Without packets of the device (DIFOP). `file`: beams of the unit; of RS-LiDAR-32 needed.
 std::unique_ptr<PacketEncoder> makeRs16Encoder(const std::string& file);
 std::unique_ptr<PacketEncoder> makeRs32Encoder(const std::string& file);
+std::unique_ptr<PacketEncoder> makeHelios16Encoder(const std::string& file);
+std::unique_ptr<PacketEncoder> makeHelios32Encoder(const std::string& file);
+std::unique_ptr<PacketEncoder> makeBpearlEncoder(const std::string& file);
 std::unique_ptr<PacketEncoder> makeOusterEncoder(const std::string& file);
 std::unique_ptr<PacketEncoder> makeIbeoEncoder(const std::string& file);
 std::unique_ptr<PacketEncoder> makeEsrEncoder(const std::string& file);

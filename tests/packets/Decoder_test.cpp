@@ -28,10 +28,11 @@ std::string packetOf(const std::string& kind) {
     bytes.assign(1080, '\1');
     bytes.replace(0, 10, std::string("\xEE\xFF\6\1\0\0\x20\x08\1\4", 10));
     bytes[1062] = '\x39';
-  } else if (kind == "rs16" || kind == "rs32") {
+  } else if (kind == "rs16" || kind == "rs32" || kind == "bpearl" || kind.rfind("helios", 0) == 0) {
     bytes.assign(1248, '\1');
     bytes.replace(0, 8, "\x55\xAA\x05\x0A\x5A\xA5\x50\xA0");
-    bytes[30] = kind == "rs16" ? '\1' : '\2';
+    if (kind.rfind("helios", 0) == 0) bytes.replace(0, 4, "\x55\xAA\x05\x5A");
+    bytes[30] = kind == "rs16" ? '\1' : kind == "rs32" ? '\2' : '\3';
     for (std::size_t b = 0; b < 12; ++b) bytes.replace(42 + 100 * b, 2, "\xFF\xEE");
   } else if (kind == "ouster") {
     bytes.assign(16 * (16 + 32 * 12 + 4), '\1');

@@ -9,6 +9,7 @@
 #include <variant>
 
 #include "libperception/core/Error.h"
+#include "libperception/measurement/frames/NoReturns.h"
 #include "libperception/measurement/frames/ScanTimes.h"
 #include "libperception/sensors/frames/ToObservation.h"
 
@@ -192,6 +193,7 @@ void RosIntake::giveFrame(const std::string& topic, bool first, SensorFrame&& fr
   if (topic == frames_topic_ && first) give_(frameComment(frame.stamp, ++frame_));
   if (doubles_.isDouble(frame)) return;
   auto* const cloud = std::get_if<LidarCloud>(&frame.data);
+  if (cloud != nullptr) no_returns_[frame.sensor] += clear(noReturnsOf(*cloud), *cloud);
   if (cloud != nullptr && timesOutsideOf(*cloud)) {
     ++timeless_[frame.sensor];
     cloud->time_offset.clear();
@@ -229,6 +231,10 @@ std::vector<std::string> RosIntake::notes() const {
   for (const auto& [label, count] : doubles_.counts())
     all.push_back(fmt::format(
         "{}: {} messages came twice, with the same stamp and content: left out", label, count));
+  for (const auto& [label, count] : no_returns_)
+    if (count > 0)
+      all.push_back(
+          fmt::format("{}: {} points are no returns by their range: left out", label, count));
   return all;
 }
 

@@ -99,7 +99,8 @@ class RosIntake {
   std::string frames_topic_;
   std::int64_t frame_ = -1;
   DoubledMessages doubles_;
-  std::map<std::string, std::int64_t> timeless_;  ///< by sensor: scans without their times
+  std::map<std::string, std::size_t> no_returns_;  ///< by sensor: points
+  std::map<std::string, std::int64_t> timeless_;   ///< by sensor: scans without their times
 };
 
 }  // namespace perception

@@ -104,4 +104,30 @@ BagChoices chooseFrom(const BagContents& contents, Config& config, ImportLog& lo
   return choices;
 }
 
+void plantPoses(const BagChoices& choices, BagContents& contents) {
+  const auto is_needed = [&](const std::string& world) {
+    return std::any_of(contents.frames.begin(), contents.frames.end(), [&](const auto& row) {
+      const auto& [topic, frames] = row;
+      return contents.poses.count(topic) == 0 &&
+             std::find(frames.begin(), frames.end(), world) != frames.end();
+    });
+  };
+  for (const auto& [topic, given] : contents.poses) {
+    const auto frames = contents.frames.find(topic);
+    if (given.poses.empty() || frames == contents.frames.end()) continue;
+    const std::string world = frames->second.front(), root = contents.tree.rootOf(choices.base);
+    if (world.empty() || world == choices.base ||
+        contents.tree.at(world, choices.base, given.poses.row(0).stamp) || !is_needed(world))
+      continue;
+    const PoseSeries poses = posesOfTopic(contents, choices, topic);
+    for (std::size_t i = 0; i < poses.size(); ++i) {
+      const PoseSeries::Row row = poses.row(i);
+      if (const auto T_base_root = contents.tree.at(choices.base, root, row.stamp))
+        contents.tree.add(world, root, row.stamp, row.pose * choices.T_ego_base * *T_base_root,
+                          false);
+    }
+    contents.tree.settle();
+  }
+}
+
 }  // namespace perception

@@ -23,4 +23,8 @@ struct BagChoices {
 /// Throws ConfigError: the INI names what the recording does not have.
 BagChoices chooseFrom(const BagContents& contents, Config& config, ImportLog& log);
 
+/// Adds the poses of topics to the tree of frames where a sensor's messages are in the frame of
+/// reference of these poses, and no transforms lead from there to the vehicle.
+void plantPoses(const BagChoices& choices, BagContents& contents);
+
 }  // namespace perception

@@ -128,14 +128,16 @@ void BagReading::tell() const {
   for (const auto& [topic, fault] : bad_)
     log_.warn(fmt::format("{}: {} unreadable messages left out, the first: {}", topic, fault.first,
                           fault.second));
+  for (const std::string& note : measurements_.notes()) log_.note(note);
   for (const std::string& warning : measurements_.warnings()) log_.warn(warning);
 }
 
 /// The recording is read twice: for what it holds, then for its sensors' data.
 void importBag(const std::string& path, Config& config, ImportLog& log) {
   const auto files = bagFiles(path);
-  const BagContents contents = readContents(path);
+  BagContents contents = readContents(path);
   const BagChoices choices = chooseFrom(contents, config, log);
+  plantPoses(choices, contents);
   if (choices.frames_topic.empty()) {
     throw DataError(fmt::format("{}: no topic of sensor_msgs/PointCloud2, Image, CompressedImage, "
                                 "radar_msgs/RadarScan or of a lidar's packets is used: {}",

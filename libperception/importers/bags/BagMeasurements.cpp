@@ -4,9 +4,11 @@
 
 #include <algorithm>
 #include <optional>
+#include <stdexcept>
 #include <utility>
 #include <variant>
 
+#include "libperception/importers/bags/MoveReturns.h"
 #include "libperception/interop/ros/RosSensors.h"
 #include "libperception/sensors/observations/Conversions.h"
 
@@ -156,7 +158,7 @@ void BagMeasurements::takeFrame(const std::string& topic, const ros::Header& hea
   const std::string other = otherFrame(topic, header);
   frame.sensor = other.empty() ? params.label : params.label + "_" + labelOfTopic(other);
   frame.stamp = header.stamp;
-  frame.T_ego_sensor = mounting(header, params);
+  place(topic, header, params, frame);
   outputs_.frame(topic, other.empty(), std::move(frame));
 }
 
@@ -230,12 +232,57 @@ Pose3 BagMeasurements::mounting(const ros::Header& header, const BagTopicParams&
   return place.value_or(T_ego_base_);
 }
 
+/// Whether the vehicle travels in the message's frame, by the transforms or else by its name.
+bool BagMeasurements::isOfWorld(const ros::Header& header, const BagTopicParams& params) const {
+  const std::string frame = frameName(header.frame_id);
+  if (contents_.tree.travelsIn(frame, base_)) return true;
+  return isNamedAsWorld(frame) && !placeOf(header, params);
+}
+
+/// Sets the sensor's place on the vehicle. Returns that programs moved into a frame of the world
+/// are moved back: to the place that the parameters say, else to the vehicle's frame.
+void BagMeasurements::place(const std::string& topic, const ros::Header& header,
+                            const BagTopicParams& params, SensorFrame& frame) {
+  const std::string world = frameName(header.frame_id);
+  const bool returns = std::holds_alternative<LidarCloud>(frame.data) ||
+                       std::holds_alternative<RadarReturns>(frame.data);
+  if (!returns || !isOfWorld(header, params)) {
+    frame.T_ego_sensor = mounting(header, params);
+    return;
+  }
+  const auto T_base_world = contents_.tree.at(base_, world, header.stamp);
+  if (!T_base_world)
+    throw std::runtime_error(
+        fmt::format("it is in the fixed frame \"{}\", in which the pose of the vehicle \"{}\" at "
+                    "that time is not known (if the sensor stands there: [topic.{}] pose)",
+                    world, base_, topic));
+  frame.T_ego_sensor = params.pose.empty() ? T_ego_base_ : poseOfNumbers(params.pose);
+  moveReturns(frame.T_ego_sensor.inverse() * T_ego_base_ * *T_base_world, frame);
+  moved_[topic] = {world, !params.pose.empty()};
+}
+
 void BagMeasurements::finish() {
   for (const auto& row : packets_) row.second->finish();
 }
 
+std::vector<std::string> BagMeasurements::notes() const {
+  std::vector<std::string> all;
+  for (const auto& [topic, moved] : moved_)
+    all.push_back(
+        fmt::format("{}: its returns are in the fixed frame \"{}\": moved back to the "
+                    "vehicle by its poses",
+                    topic, moved.first));
+  return all;
+}
+
 std::vector<std::string> BagMeasurements::warnings() const {
   std::vector<std::string> all;
+  for (const auto& [topic, moved] : moved_)
+    if (!moved.second)
+      all.push_back(fmt::format(
+          "{}: its messages do not say where the sensor is on the vehicle: taken to be at \"{}\" "
+          "([topic.{}] pose says where it is)",
+          topic, base_, topic));
   for (const auto& row : packets_) {
     for (const std::string& warning : row.second->warnings()) all.push_back(warning);
   }

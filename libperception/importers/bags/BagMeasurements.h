@@ -56,6 +56,8 @@ class BagMeasurements {
   void take(const BagMessage& message);
   /// The last scans of lidars in packets.
   void finish();
+  /// Topics whose data were moved back to the vehicle.
+  std::vector<std::string> notes() const;
   /// Damaged or missing packets, and frames without a place on the vehicle.
   std::vector<std::string> warnings() const;
 
@@ -73,6 +75,9 @@ class BagMeasurements {
   std::optional<CameraModel> cameraFor(const std::string& topic, const std::string& frame) const;
   std::optional<Pose3> placeOf(const ros::Header& header, const BagTopicParams& params) const;
   Pose3 mounting(const ros::Header& header, const BagTopicParams& params);
+  bool isOfWorld(const ros::Header& header, const BagTopicParams& params) const;
+  void place(const std::string& topic, const ros::Header& header, const BagTopicParams& params,
+             SensorFrame& frame);
 
   const BagContents& contents_;
   const BagTopicParamsByName& topics_;
@@ -81,6 +86,8 @@ class BagMeasurements {
   Pose3 T_ego_base_ = Pose3::Identity();
   /// By topic and frame of reference, which are a sensor each.
   std::map<std::pair<std::string, std::string>, std::unique_ptr<BagPackets>> packets_;
+  std::map<std::string, std::pair<std::string, bool>>
+      moved_;  ///< by topic: the frame its data were moved from, whether the sensor has a place
   std::set<std::string> radars_;                ///< topics whose clouds are a radar's
   std::set<std::string> unplaced_;              ///< frames without a place on the vehicle
   std::map<std::string, std::string> foreign_;  ///< frames of readings that are not the vehicle's

@@ -2,8 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <iterator>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -45,14 +47,15 @@ void addRslidar(std::string_view packet, Stamp stamp, std::vector<BagPacket>& pa
   if (isDifop(packet)) return;
   const auto model = robosenseModelIn(packet);
   if (!model)
-    throw std::runtime_error(fmt::format(
-        "a packet of {} bytes that is none of RS-LiDAR-16 or -32, the models of RoboSense that are "
-        "read",
-        packet.size()));
-  if (*model != kRs16.id && *model != kRs32.id)
     throw std::runtime_error(
-        fmt::format("byte 30 of a packet: model {}, expected {} ({}) or {} ({})", *model, kRs16.id,
-                    kRs16.name, kRs32.id, kRs32.name));
+        fmt::format("a packet of {} bytes that is none of RoboSense's RS-LiDAR-16, -32, Helios or "
+                    "Bpearl, which are read",
+                    packet.size()));
+  const int known[] = {kRs16.id, kRs32.id, kBpearl.id, kHeliosId};
+  if (std::find(std::begin(known), std::end(known), *model) == std::end(known))
+    throw std::runtime_error(
+        fmt::format("byte 30 of a packet: model {}, expected {} ({}), {} ({}) or {} ({})", *model,
+                    kRs16.id, kRs16.name, kRs32.id, kRs32.name, kBpearl.id, kBpearl.name));
   packets.push_back({std::string(packet), stamp});
 }
 

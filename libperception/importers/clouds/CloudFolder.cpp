@@ -37,11 +37,16 @@ std::string whatIsIn(const std::string& folder) {
 }
 
 std::string whyNotRead(const std::string& ending) {
+  for (const char* archive : {".zip", ".tar", ".tgz", ".7z", ".rar"})
+    if (ending == archive) return fmt::format("; {} is an archive: unpack it", ending);
   if (std::find(std::begin(kNotRead), std::end(kNotRead), ending) == std::end(kNotRead)) return "";
   return fmt::format("; {} is not read: save the scans as .pcd, .ply or text", ending);
 }
 
 CloudFiles cloudFilesIn(const std::string& folder) {
+  const std::filesystem::path path = folder;
+  if (std::filesystem::is_regular_file(path))
+    throw DataError(folder + ": not a folder" + whyNotRead(path.extension().string()));
   requireFolder(folder);
   std::map<std::string, std::vector<std::string>> names;  // by ending without .gz
   for (const auto& entry : std::filesystem::directory_iterator(folder)) {

@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <optional>
+#include <utility>
 
 #include "libperception/core/Error.h"
 #include "libperception/core/PoseSteps.h"
@@ -11,6 +12,7 @@
 #include "libperception/importers/StampText.h"
 #include "libperception/importers/clouds/CloudFolder.h"
 #include "libperception/importers/clouds/ImportClouds.h"
+#include "libperception/importers/clouds/WorldClouds.h"
 #include "libperception/importers/kitti/KittiFiles.h"
 
 namespace perception {
@@ -151,7 +153,7 @@ void CloudsImporter::readStamps(const std::vector<FrameFile>& files, ImportLog& 
 void CloudsImporter::readViewpoints(const std::vector<FrameFile>& files, ImportLog& log) {
   if (poses_format_ != "pcd") {
     const auto last = viewpointOf(files.back().path);
-    if (poses_file_.empty() && last && !last->isApprox(Pose3::Identity(), 1e-9))
+    if (last && !last->isApprox(Pose3::Identity(), 1e-9))
       log.note(fmt::format(
           "the VIEWPOINT of {} is not used: --poses-format pcd takes the VIEWPOINTs as poses",
           files.back().path));
@@ -257,6 +259,14 @@ void CloudsImporter::run(ImportLog& log) {
   const Pose3 origin = !has_poses         ? Pose3::Identity()
                        : stamped_.empty() ? poses_.front()
                                           : stamped_.front().pose;
+  std::vector<PlacedFile> placed;
+  for (std::size_t i = 0; i < files.size(); ++i)
+    if (const auto pose = poseAt(i)) placed.push_back({files[i].path, pose->translation()});
+  const bool in_world = areInWorld(placed, format_);
+  if (in_world)
+    log.note(
+        "the returns lie about the places of the poses, in whose frame they are: moved back to the "
+        "lidar");
   for (std::size_t i = 0; i < files.size(); ++i) {
     if (!log.wants(files[i].number)) continue;
     const auto pose = poseAt(i);
@@ -266,7 +276,10 @@ void CloudsImporter::run(ImportLog& log) {
       log.missing("pose", poses_file_, files[i].number);
     }
     log.frame(stamps_[i], files[i].number);
-    log.sensor(label_, stamps_[i], T_ego_lidar, readCloudFile(files[i].path, format_));
+    LidarCloud cloud = readCloudFile(files[i].path, format_);
+    if (in_world && pose)
+      cloud = inFrame(std::move(cloud), T_ego_lidar.inverse() * T_ego_pose * pose->inverse());
+    if (!in_world || pose) log.sensor(label_, stamps_[i], T_ego_lidar, std::move(cloud));
     log.progress(static_cast<std::int64_t>(i + 1), static_cast<std::int64_t>(files.size()));
   }
 }

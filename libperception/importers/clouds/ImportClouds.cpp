@@ -11,6 +11,7 @@
 #include "libperception/importers/ImportText.h"
 #include "libperception/importers/clouds/CloudLayout.h"
 #include "libperception/importers/clouds/CloudTable.h"
+#include "libperception/measurement/frames/ScanTimes.h"
 
 namespace perception {
 namespace {
@@ -161,6 +162,16 @@ const std::vector<double>* find(const CloudTable& table, std::string_view what) 
   return nullptr;
 }
 
+/// The numbers of a coordinate. Throws DataError: it has no known unit.
+const std::vector<double>* findCoordinate(const std::string& path, const CloudTable& table,
+                                          std::string_view what) {
+  const auto* const values = find(table, what);
+  for (std::size_t c = 0; c < table.columns.size(); ++c)
+    if (&table.values[c] == values && table.columns[c].kind != 'F')
+      throw DataError(path + ": x, y and z are whole numbers, whose unit is not said");
+  return values;
+}
+
 LidarCloud cloudOf(const std::string& path, const CloudTable& table, const CloudFormat& format) {
   const auto toFloat = [](const std::vector<double>& in, double scale) {
     std::vector<float> out(in.size());
@@ -168,7 +179,8 @@ LidarCloud cloudOf(const std::string& path, const CloudTable& table, const Cloud
     return out;
   };
   LidarCloud cloud;
-  const auto *x = find(table, "x"), *y = find(table, "y"), *z = find(table, "z");
+  const auto coordinate = [&](const char* name) { return findCoordinate(path, table, name); };
+  const auto *x = coordinate("x"), *y = coordinate("y"), *z = coordinate("z");
   if (!x || !y || !z) {
     std::vector<std::string> names;
     for (const CloudColumn& c : table.columns) names.push_back(c.name);
@@ -184,7 +196,7 @@ LidarCloud cloudOf(const std::string& path, const CloudTable& table, const Cloud
       cloud.ring[i] = static_cast<std::uint16_t>((*v)[i] >= 0 && (*v)[i] < 65536 ? (*v)[i] : 0);
   }
   if (const auto* v = find(table, "time")) {
-    const double begin = v->empty() || format.about_stamp ? 0 : v->front();
+    const double begin = format.about_stamp ? 0 : earliestOf(*v, cloud);
     cloud.time_offset.resize(v->size());
     for (std::size_t i = 0; i < v->size(); ++i)
       cloud.time_offset[i] = static_cast<float>(((*v)[i] - begin) * format.time_scale);

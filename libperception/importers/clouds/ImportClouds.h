@@ -34,7 +34,7 @@ CloudFormat foundFormat(const std::vector<std::string>& paths, const CloudFormat
 
 /// One scan: .bin (float32 columns), .pcd (PCL 0.7: ascii, binary, binary_compressed), .ply (ascii,
 /// binary of both byte orders), .csv .txt .xyz (CsvText), .npy and .npz of numpy. Order and number
-/// of points are kept, including NaN points. Times become offsets from that of the first point.
+/// of points are kept, including NaN points. Times become offsets from that of the earliest return.
 /// Throws DataError (kNoInput if missing, else with position and expectation).
 LidarCloud readCloudFile(const std::string& path, const CloudFormat& format = {});
 

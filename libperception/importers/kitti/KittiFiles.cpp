@@ -97,7 +97,7 @@ std::vector<Pose3> readKittiPoses(const std::string& path, const std::string& fo
   } else {
     forEachRow(path, kCommas, [&](const TextRow& row) {
       if (row.text(0).front() == '#') return;
-      row.expect(row.size() == 12, "12 (8 are those of --poses-format tum)");
+      row.expect(row.size() == 12 || row.size() == 16, "12 (8 are those of --poses-format tum)");
       poses.push_back(row.pose34(0));
     });
   }
@@ -118,6 +118,8 @@ std::vector<Pose3> readKittiOxts(const std::vector<std::string>& paths) {
     const double lat = row.real(0), lon = row.real(1);
     if (std::abs(lat) >= 90) row.fail(0, "a latitude in degrees");
     if (std::abs(lon) > 360) row.fail(1, "a longitude in degrees");
+    for (std::size_t i = 3; i < 6; ++i)
+      if (std::abs(row.real(i)) > 2 * kPi) row.fail(i, "an angle in radians");
     if (poses.empty()) scale = std::cos(radians(lat));
     const double x = scale * radians(lon) * kEarthRadius;
     const double y = scale * kEarthRadius * std::log(std::tan(radians(90 + lat) / 2));

@@ -205,9 +205,9 @@ void addPackets(std::vector<BagType>& types) {
   ouster.device_files = &BagContents::metadata, ouster.has_header = false;
   add(types, {"ouster_ros/PacketMsg", "ouster_msgs/PacketMsg", "ouster_sensor_msgs/PacketMsg"},
       ouster);
-  BagType scan = packed(kPacketsUse, Role::kCloud, nullptr, &unpackRslidarScan, {"rs16", "rs32"});
-  BagType packet =
-      packed(kPacketsUse, Role::kCloud, &noteRslidar, &unpackRslidarPacket, {"rs16", "rs32"});
+  const std::vector<const char*> robosense = {"rs16", "rs32", "helios32", "helios16", "bpearl"};
+  BagType scan = packed(kPacketsUse, Role::kCloud, nullptr, &unpackRslidarScan, robosense);
+  BagType packet = packed(kPacketsUse, Role::kCloud, &noteRslidar, &unpackRslidarPacket, robosense);
   scan.device_files = packet.device_files = &BagContents::difop, packet.has_header = false;
   add(types, {"rslidar_msgs/rslidarScan", "rslidar_msgs/RslidarScan", "rslidar_msg/RslidarScan"},
       scan);

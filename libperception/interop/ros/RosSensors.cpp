@@ -7,6 +7,8 @@
 #include <cmath>
 #include <limits>
 
+#include "libperception/measurement/frames/ScanTimes.h"
+
 namespace perception::ros {
 namespace {
 
@@ -109,14 +111,13 @@ double secondsSince1970(double value) {
   return value * 1e-9;
 }
 
-/// Seconds after the header's stamp of a value of the time field; after the first point's where the
-/// header has none.
+/// [s] of a value of the time field after the header's stamp, or the first return's without one.
 double secondsOf(double value, const PointField& field, Stamp stamp, double first) {
   const std::string name = lowerCase(field.name);
   if (name == "t" || name == "offset_time") return value * 1e-9;
   if (name != "timestamp") return value;
   // Of a device that has no date: since the scan began, or since it was switched on.
-  constexpr double kDated = 1e9, kLongestScan = 1;
+  constexpr double kDated = 1e9;
   if (std::abs(secondsSince1970(first)) < kDated)
     return value - (std::abs(first) > kLongestScan ? first : 0);
   return secondsSince1970(value) - (stamp.ns > 0 ? stamp.seconds() : secondsSince1970(first));
@@ -175,12 +176,12 @@ LidarCloud cloudOf(const PointCloud2& message, double intensity_max) {
   });
   if (const Column column(message, {"t", "offset_time", "time", "time_offset", "timestamp"});
       column) {
-    std::optional<double> first;
-    column.forEach([&](double value) {
-      if (!first) first = value;
+    std::vector<double> times;
+    column.forEach([&](double t) { times.push_back(t); });
+    const double first = earliestOf(times, cloud);
+    for (const double t : times)
       cloud.time_offset.push_back(
-          static_cast<float>(secondsOf(value, column.field(), message.header.stamp, *first)));
-    });
+          static_cast<float>(secondsOf(t, column.field(), message.header.stamp, first)));
   }
   return cloud;
 }

@@ -12,10 +12,10 @@ namespace perception::ros {
 /// The cloud of a message, order and number of points kept, NaN points too. Needs the fields x, y,
 /// z; used are intensity (or i, reflectivity), ring (or channel, line) and a time: t, offset_time
 /// [ns] and time, time_offset [s] after the header's stamp; timestamp since 1970 (after the
-/// first point's where the header has no stamp), or of a device without a date [s] since the scan
-/// began, or since it was switched on (after the first point's). Intensities are divided by
-/// `intensity_max`; 0: bytes by 255, others stay as they are. Throws std::runtime_error,
-/// also where x, y, z are whole numbers, which have no known unit.
+/// earliest return's where the header has no stamp), or of a device without a date [s] since the
+/// scan began, or since it was switched on (after the earliest return's). Intensities are divided
+/// by `intensity_max`; 0: bytes by 255, others stay as they are. Throws std::runtime_error, also
+/// where x, y, z are whole numbers, which have no known unit.
 LidarCloud cloudOf(const PointCloud2& message, double intensity_max = 0);
 /// A scan of Livox; `intensity_max`: 0 stands for 255. Times are after the header's stamp.
 LidarCloud cloudOf(const LivoxScan& message, double intensity_max = 0);

@@ -103,6 +103,12 @@ std::string TransformTree::moverOf(const std::string& frame) const {
   return "";
 }
 
+bool TransformTree::travelsIn(const std::string& above, const std::string& frame) const {
+  const auto chain = ancestors(frame);
+  const auto mover = std::find(chain.begin(), chain.end(), moverOf(frame));
+  return mover != chain.end() && std::find(mover + 1, chain.end(), above) != chain.end();
+}
+
 Stamp TransformTree::knownUntil(const std::string& frame) const {
   Stamp until{std::numeric_limits<std::int64_t>::max()};
   for (const std::string& above : ancestors(frame)) {

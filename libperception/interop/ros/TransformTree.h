@@ -32,6 +32,10 @@ class TransformTree {
   std::vector<std::string> moving() const;
   /// The nearest frame that moves in its parent, at or above a frame; empty: none.
   std::string moverOf(const std::string& frame) const;
+  /// Whether `above` is above a frame, and a step between them moves: the frame travels in it.
+  bool travelsIn(const std::string& above, const std::string& frame) const;
+  /// The highest ancestor of a frame; itself without any.
+  std::string rootOf(const std::string& frame) const { return ancestors(frame).back(); }
   /// Until when all steps at and above a frame are known without a look beyond their ends; the
   /// end of time where none of them moves.
   Stamp knownUntil(const std::string& frame) const;

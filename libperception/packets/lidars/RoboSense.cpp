@@ -4,8 +4,6 @@
 #include <array>
 #include <cmath>
 #include <ctime>
-#include <fstream>
-#include <iterator>
 #include <string>
 #include <utility>
 #include <vector>
@@ -17,7 +15,10 @@
 namespace perception {
 
 const RoboSenseModel kRs16{"RS-LiDAR-16", 1, 16, 55.5, 0.03825},
-    kRs32{"RS-LiDAR-32", 2, 32, 55.52, 0.03997};
+    kRs32{"RS-LiDAR-32", 2, 32, 55.52, 0.03997},
+    kHelios16{"RS-Helios-16P", kHeliosId, 16, 55.56, 0.03498, -60, 60, false, 0.0025},
+    kHelios32{"RS-Helios-32", kHeliosId, 32, 55.56, 0.03498, -60, 60, false, 0.0025},
+    kBpearl{"RS-Bpearl", 3, 32, 55.52, 0.01473, 0, 90, false, 0.005, 0.09427};
 
 namespace {
 
@@ -25,59 +26,15 @@ using namespace std::string_view_literals;
 
 // Of MSOP packets: header, blocks of an azimuth and 32 returns, a tail. [bytes]
 constexpr auto kMsop = "\x55\xAA\x05\x0A\x5A\xA5\x50\xA0"sv;
-constexpr std::size_t kStampAt = 20, kModelAt = 30, kRsHeader = 42, kRsBlock = 100;
+constexpr auto kHeliosMsop = "\x55\xAA\x05\x5A"sv;
+constexpr std::size_t kStampAt = 20, kHeliosStampAt = 10, kModelAt = 30, kVersionAt = 31,
+                      kRsHeader = 42, kRsBlock = 100;
 constexpr std::size_t kRsBlocks = 12, kRsReturns = 32;
 constexpr int kRsTurn = 36000;              ///< [0.01 deg]
 constexpr int kWidestStep = 200;            ///< [0.01 deg] more is a field of view that is left out
-constexpr double kRsUnit = 0.005;           ///< [m]
 constexpr std::uint64_t kNoReturn = 65535;  ///< as 0
-// Of DIFOP packets.
-constexpr auto kDifop = "\xA5\xFF\x00\x5A\x11\x11\x55\x55"sv;
-constexpr std::size_t kPitchesOf16 = 1165, kElevationsOf32 = 468, kAzimuthsOf32 = 564;
-constexpr double kFromNominal = 2;  ///< [deg] (assumed) most of a unit's angle
-
 bool beginsWith(std::string_view payload, std::string_view id) {
   return payload.size() == kRoboSenseSize && payload.substr(0, id.size()) == id;
-}
-
-/// Three bytes a laser [0.0001 deg]; the first eight look down.
-std::vector<BeamAngles> pitchesOf16(std::string_view payload) {
-  std::vector<BeamAngles> beams;
-  for (std::size_t i = 0; i < kRs16.lasers; ++i) {
-    const double angle = 1e-4 * static_cast<double>(bigEndian(payload, kPitchesOf16 + 3 * i, 3));
-    beams.push_back({i < kRs16.lasers / 2 ? -angle : angle, 0});
-    if (std::abs(beams[i].elevation - rs16Beams()[i].elevation) > kFromNominal) return {};
-  }
-  return beams;
-}
-
-/// A sign and two bytes a laser [0.001 or 0.01 deg, by the firmware]; empty: not set.
-std::vector<double> anglesOf32(std::string_view payload, std::size_t from, double unit) {
-  std::vector<double> angles;
-  for (std::size_t at = from; angles.size() < kRs32.lasers; at += 3) {
-    const auto sign = bigEndian(payload, at, 1);
-    if (sign > 1) return {};
-    const double angle = unit * static_cast<double>(bigEndian(payload, at + 1, 2));
-    angles.push_back(sign == 1 ? -angle : angle);
-  }
-  return angles;
-}
-
-/// The lasers look from 25 deg down to 15 deg up: that tells the unit of the angles, too.
-std::vector<BeamAngles> beamsOf32(std::string_view payload) {
-  constexpr double kLowest = -25, kHighest = 15;  // [deg]
-  for (const double unit : {0.001, 0.01}) {
-    const auto elevations = anglesOf32(payload, kElevationsOf32, unit);
-    const auto azimuths = anglesOf32(payload, kAzimuthsOf32, unit);
-    if (elevations.empty() || azimuths.empty()) return {};
-    const auto [low, high] = std::minmax_element(elevations.begin(), elevations.end());
-    if (std::abs(*low - kLowest) > kFromNominal || std::abs(*high - kHighest) > kFromNominal)
-      continue;
-    std::vector<BeamAngles> beams;
-    for (std::size_t i = 0; i < kRs32.lasers; ++i) beams.push_back({elevations[i], azimuths[i]});
-    return beams;
-  }
-  return {};
 }
 
 class RoboSenseDecoder final : public PacketDecoder {
@@ -137,10 +94,15 @@ class RoboSenseDecoder final : public PacketDecoder {
     if (payload.size() != kRoboSenseSize)
       refuse(std::to_string(payload.size()) + " bytes, expected 1248");
     const auto model = robosenseModelIn(payload);
-    if (!model)
-      refuse("byte 0: expected 55 AA 05 0A 5A A5 50 A0 (RS-LiDAR-16 and -32 alone are read)");
-    const int other = kRs16.id + kRs32.id - model_.id;
-    if (*model == other) refuse("byte 30: it is of model " + std::to_string(other));
+    if (!model) refuse("byte 0: expected 55 AA 05 0A 5A A5 50 A0, or 55 AA 05 5A of a Helios");
+    const bool known = *model == kRs16.id || *model == kRs32.id || *model == kBpearl.id;
+    const bool helios = *model == kHeliosId;
+    if (*model != model_.id && (known || helios || model_.id == kHeliosId))
+      refuse(helios ? "byte 0: it is of a Helios"
+                    : "byte 30: it is of model " + std::to_string(*model));
+    constexpr std::uint64_t kOtherUnit = 4;
+    if (model_.id == kBpearl.id && bigEndian(payload, kVersionAt, 1) == kOtherUnit)
+      refuse("byte 31: it is of version 4, whose unit of distances is not known");
     std::array<int, kRsBlocks> azimuths{};
     for (std::size_t b = 0; b < kRsBlocks; ++b) {
       const std::size_t at = kRsHeader + b * kRsBlock;
@@ -154,7 +116,10 @@ class RoboSenseDecoder final : public PacketDecoder {
     return azimuths;
   }
 
-  static std::int64_t stampOf(std::string_view payload) {
+  std::int64_t stampOf(std::string_view payload) const {
+    if (model_.id == kHeliosId)
+      return static_cast<std::int64_t>(bigEndian(payload, kHeliosStampAt, 6)) * 1'000'000'000 +
+             static_cast<std::int64_t>(bigEndian(payload, kHeliosStampAt + 6, 4)) * 1000;
     const auto field = [&](std::size_t i) {
       return static_cast<int>(bigEndian(payload, kStampAt + i, 1));
     };
@@ -191,10 +156,10 @@ class RoboSenseDecoder final : public PacketDecoder {
       const double after =
           model_.firing * static_cast<double>(j / model_.lasers) + model_.laserTime(laser);
       const double angle = (azimuth + step * after / period) / 100;
-      const double range = static_cast<double>(raw) * kRsUnit;
+      const double range = static_cast<double>(raw) * model_.unit;
       LidarReturn point = returnAt(range, angle + beams_[laser].azimuth, beams_[laser].elevation);
       const LidarReturn lens = returnAt(model_.lens, angle, 0);
-      point.x += lens.x, point.y += lens.y;
+      point.x += lens.x, point.y += lens.y, point.z += static_cast<float>(model_.lens_height);
       point.intensity = static_cast<std::uint8_t>(payload[at + 2]);
       point.ring = rings_[laser];
       point.echo = static_cast<std::uint8_t>(echo);
@@ -212,43 +177,20 @@ class RoboSenseDecoder final : public PacketDecoder {
 }  // namespace
 
 double RoboSenseModel::laserTime(std::size_t laser) const {
+  static constexpr double kOfHelios[] = {0,     1.57,  3.15,  4.72,  6.30,  7.87,  9.45,  11.36,
+                                         13.26, 15.17, 17.08, 18.99, 20.56, 22.14, 23.71, 25.29,
+                                         26.53, 29.01, 27.77, 30.25, 31.49, 33.98, 32.73, 35.22,
+                                         36.46, 37.70, 38.94, 40.18, 41.42, 42.67, 43.91, 45.15};
+  if (id == kHeliosId) return kOfHelios[laser % lasers * (32 / lasers)];
   const auto i = static_cast<double>(laser % 16), pair = static_cast<double>(laser / 16);
+  if (id == kBpearl.id) return 2.56 * i + (laser % 16 < 8 ? 0 : 5.2) + 1.28 * pair;
   return id == kRs16.id ? 2.8 * i : 2.88 * i + 1.44 * pair;
 }
 
-bool isDifop(std::string_view payload) { return beginsWith(payload, kDifop); }
-
 std::optional<int> robosenseModelIn(std::string_view payload) {
+  if (beginsWith(payload, kHeliosMsop)) return kHeliosId;
   if (!beginsWith(payload, kMsop)) return {};
   return static_cast<int>(bigEndian(payload, kModelAt, 1));
-}
-
-const std::vector<BeamAngles>& rs16Beams() {
-  static const std::vector<BeamAngles> beams = [] {
-    std::vector<BeamAngles> list;
-    for (int i = 0; i < 8; ++i) list.push_back({2.0 * i - 15, 0});
-    for (int i = 0; i < 8; ++i) list.push_back({15 - 2.0 * i, 0});
-    return list;
-  }();
-  return beams;
-}
-
-std::vector<BeamAngles> beamsOfDifop(std::string_view payload, const RoboSenseModel& model) {
-  if (!isDifop(payload)) return {};
-  return model.id == kRs16.id ? pitchesOf16(payload) : beamsOf32(payload);
-}
-
-std::vector<BeamAngles> robosenseBeams(const std::string& file, const RoboSenseModel& model) {
-  if (file.empty()) return model.id == kRs16.id ? rs16Beams() : std::vector<BeamAngles>();
-  std::ifstream in(file, std::ios::binary);
-  std::string bytes(kRoboSenseSize + 1, '\0');
-  in.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-  bytes.resize(static_cast<std::size_t>(std::max<std::streamsize>(in.gcount(), 0)));
-  if (!isDifop(bytes)) return readBeams(file, model.lasers);
-  auto beams = beamsOfDifop(bytes, model);
-  if (beams.empty())
-    throw DataError(file + ": a DIFOP packet without angles of an " + std::string(model.name));
-  return beams;
 }
 
 std::unique_ptr<PacketDecoder> makeRs16Decoder(const std::string& file) {
@@ -257,6 +199,18 @@ std::unique_ptr<PacketDecoder> makeRs16Decoder(const std::string& file) {
 
 std::unique_ptr<PacketDecoder> makeRs32Decoder(const std::string& file) {
   return std::make_unique<RoboSenseDecoder>(kRs32, file);
+}
+
+std::unique_ptr<PacketDecoder> makeHelios16Decoder(const std::string& file) {
+  return std::make_unique<RoboSenseDecoder>(kHelios16, file);
+}
+
+std::unique_ptr<PacketDecoder> makeHelios32Decoder(const std::string& file) {
+  return std::make_unique<RoboSenseDecoder>(kHelios32, file);
+}
+
+std::unique_ptr<PacketDecoder> makeBpearlDecoder(const std::string& file) {
+  return std::make_unique<RoboSenseDecoder>(kBpearl, file);
 }
 
 }  // namespace perception

@@ -193,9 +193,16 @@ class RoboSenseEncoder final : public SpinningEncoder {
 
   std::string pack(const std::vector<Firing>& firings) override {
     std::string bytes(kRoboSenseSize, '\0');
-    bytes.replace(0, 8, "\x55\xAA\x05\x0A\x5A\xA5\x50\xA0");
-    bytes[30] = static_cast<char>(model_.id);
-    putStamp(bytes, firings.front().at);
+    const std::int64_t at = firings.front().at;
+    if (model_.id == kHeliosId) {
+      bytes.replace(0, 4, "\x55\xAA\x05\x5A");
+      putBig(bytes, 10, static_cast<std::uint64_t>(at / 1'000'000'000), 6);
+      putBig(bytes, 16, static_cast<std::uint64_t>(at / 1000 % 1'000'000), 4);
+    } else {
+      bytes.replace(0, 8, "\x55\xAA\x05\x0A\x5A\xA5\x50\xA0");
+      bytes[30] = static_cast<char>(model_.id);
+      putStamp(bytes, at);
+    }
     for (std::size_t f = 0; f < firings.size(); ++f) {
       const std::size_t block = 42 + 100 * (f / firingsInBlock());
       const std::size_t part = f % firingsInBlock();
@@ -212,7 +219,7 @@ class RoboSenseEncoder final : public SpinningEncoder {
                std::optional<BeamView::Seen> seen) const {
     if (seen) seen->range -= model_.lens * std::cos(beams_[beam].elevation * M_PI / 180);
     if (!seen || seen->range < 0) return;
-    putReturn(bytes, at, seen, 0.005);
+    putReturn(bytes, at, seen, model_.unit);
     std::swap(bytes[at], bytes[at + 1]);
   }
 
@@ -240,6 +247,18 @@ std::unique_ptr<PacketEncoder> makeRs16Encoder(const std::string& file) {
 
 std::unique_ptr<PacketEncoder> makeRs32Encoder(const std::string& file) {
   return std::make_unique<RoboSenseEncoder>(kRs32, file);
+}
+
+std::unique_ptr<PacketEncoder> makeHelios16Encoder(const std::string& file) {
+  return std::make_unique<RoboSenseEncoder>(kHelios16, file);
+}
+
+std::unique_ptr<PacketEncoder> makeHelios32Encoder(const std::string& file) {
+  return std::make_unique<RoboSenseEncoder>(kHelios32, file);
+}
+
+std::unique_ptr<PacketEncoder> makeBpearlEncoder(const std::string& file) {
+  return std::make_unique<RoboSenseEncoder>(kBpearl, file);
 }
 
 std::unique_ptr<PacketEncoder> makeVelodyneEncoder(const std::string& file) {

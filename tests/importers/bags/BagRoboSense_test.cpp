@@ -23,12 +23,12 @@ namespace {
 constexpr std::int64_t kRsBegin = 1'700'000'000'000'000'000;  // [ns]
 using Packets = std::vector<std::pair<std::int64_t, std::string>>;
 
-/// What an RS-LiDAR-32 with beams every 1.29 deg says of itself.
-std::string difopPacket() {
+/// What a device says of itself: beams from `lowest` in equal steps [0.01 deg].
+std::string difopPacket(int lowest = -2500, int range = 4000, std::size_t beams = 32) {
   std::string bytes(1248, '\0');
   bytes.replace(0, 8, std::string("\xA5\xFF\x00\x5A\x11\x11\x55\x55", 8));
-  for (std::size_t i = 0; i < 32; ++i) {
-    const auto hundredths = -2500 + static_cast<int>(i) * 4000 / 31;
+  for (std::size_t i = 0; i < beams; ++i) {
+    const auto hundredths = lowest + static_cast<int>(i) * range / static_cast<int>(beams - 1);
     bytes[468 + 3 * i] = hundredths < 0 ? '\1' : '\0';
     putBig(bytes, 469 + 3 * i, static_cast<std::uint64_t>(std::abs(hundredths)), 2);
   }
@@ -113,6 +113,32 @@ TEST_F(BagRoboSense, ScansOfPacketsTakeTheirAnglesFromTheOtherTopic) {
   }
 }
 
+TEST_F(BagRoboSense, OtherModelsAreToldByTheirPacketsAndAngles) {
+  const std::pair<const char*, std::string> devices[] = {{"helios32", difopPacket(-1600, 3100)},
+                                                         {"helios16", difopPacket(-1500, 3000, 16)},
+                                                         {"bpearl", difopPacket(231, 8700)}};
+  for (const auto& [device, difop] : devices) {
+    write("unit.difop", difop);
+    const Packets packets = packetsOf(device, file("unit.difop"));
+    McapWriter writer(file("drive.mcap"), "ros2");
+    const auto scans = writer.addChannel("/rslidar_packets", "cdr",
+                                         {"rslidar_msg/msg/RslidarScan", "ros2msg", ""});
+    const auto own = writer.addChannel("/rslidar_packets_difop", "cdr",
+                                       {"rslidar_msg/msg/RslidarPacket", "ros2msg", ""});
+    for (const auto& [stamp, bytes] : packets) {
+      ros::RslidarScan scan;
+      scan.header = {Stamp{stamp}, "rslidar"};
+      scan.packets.push_back({Stamp{stamp}, {bytes}});
+      writer.write(scans, Stamp{stamp}, ros::encoded(scan, ros::Encoding::kCdr));
+    }
+    const ros::RslidarPacket said{Stamp{kRsBegin}, {difop}};
+    writer.write(own, Stamp{kRsBegin}, ros::encoded(said, ros::Encoding::kCdr));
+    writer.close();
+    ASSERT_EQ(import("bag", {"--bag", file("drive.mcap")}), 3) << error_;
+    expectScans("rslidar_packets", scansOf(device, file("unit.difop"), packets));
+  }
+}
+
 TEST_F(BagRoboSense, APacketAMessageWithBothKindsOnOneTopic) {
   const auto cdr = ros::Encoding::kCdr;
   const Packets packets = packetsOf("rs16", "");
@@ -171,7 +197,8 @@ TEST_F(BagRoboSense, AnotherModelIsSaidToBeNotRead) {
   writer.write(channel, Stamp{kRsBegin}, ros::encoded(scan, cdr));
   writer.close();
   EXPECT_EQ(import("bag", {"--bag", file("drive.mcap")}), 65);
-  EXPECT_NE(error_.find("model 7, expected 1 (RS-LiDAR-16) or 2 (RS-LiDAR-32)"), std::string::npos)
+  EXPECT_NE(error_.find("model 7, expected 1 (RS-LiDAR-16), 2 (RS-LiDAR-32) or 3 (RS-Bpearl)"),
+            std::string::npos)
       << error_;
 }
 

@@ -26,6 +26,17 @@ TEST(TransformTree, TheNearestStepThatMovesIsFoundFromEveryFrame) {
   EXPECT_EQ(tree.movesIn("lidar"), "map");
 }
 
+TEST(TransformTree, TheVehicleTravelsInTheFramesAboveTheStepThatMoves) {
+  const TransformTree tree = treeOfADrive(20);
+  EXPECT_TRUE(tree.travelsIn("odom", "base"));
+  EXPECT_TRUE(tree.travelsIn("map", "lidar"));
+  for (const char* frame : {"base", "lidar", "camera"})
+    EXPECT_FALSE(tree.travelsIn(frame, "base")) << frame;
+  EXPECT_FALSE(tree.travelsIn("map", "map"));
+  EXPECT_EQ(tree.rootOf("lidar"), "map");
+  EXPECT_EQ(tree.rootOf("camera"), "camera");
+}
+
 TEST(TransformTree, AChainIsKnownUntilTheFirstOfItsStepsEnds) {
   const TransformTree tree = treeOfADrive(20);
   EXPECT_EQ(tree.knownUntil("lidar"), Stamp::fromSeconds(105));

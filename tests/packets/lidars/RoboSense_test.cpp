@@ -141,5 +141,61 @@ TEST(RoboSense, AnglesOfAnRsLidar16AreThoseOfItsUnit) {
   EXPECT_THROW(deviceKind("rs32").makeEncoder(""), ConfigError);
 }
 
+/// Elevations from `lowest` on in steps [0.01 deg]; other angles are not set.
+std::string difopOf(std::size_t beams, int lowest, int step) {
+  std::string bytes = difop();
+  bytes.replace(468, 192, std::string(192, '\xFF'));
+  for (std::size_t i = 0; i < beams; ++i) {
+    const int angle = lowest + static_cast<int>(i) * step;
+    bytes[468 + 3 * i] = angle < 0 ? '\1' : '\0';
+    putBig(bytes, 469 + 3 * i, static_cast<std::uint64_t>(std::abs(angle)), 2);
+    bytes.replace(564 + 3 * i, 3, std::string(3, '\0'));
+  }
+  return bytes;
+}
+
+TEST(RoboSense, AReturnOfAHeliosLiesWhereItsLayoutSays) {
+  std::string bytes = msop(1, 20);
+  bytes.replace(0, 12, std::string("\x55\xAA\x05\x5A\1\0\0\0\0\0\0\0", 12));
+  putBig(bytes, 10, 1'700'000'000, 6);
+  putBig(bytes, 16, 250'000, 4);
+  putDistance(bytes, 5, 31, 4000);  // 10 m
+  const auto decoder = deviceKind("helios32").make("");
+  EXPECT_EQ(decoder->decode(bytes).warnings.size(), 1U) << "no angles yet";
+  EXPECT_EQ(decoder->decode(difopOf(16, -1500, 200)).warnings.size(), 1U) << "of the other model";
+  EXPECT_TRUE(decoder->decode(difopOf(32, -1600, 100)).warnings.empty());
+  const DecodedPacket packet = decoder->decode(bytes);
+  ASSERT_EQ(packet.returns.size(), 1U);
+  EXPECT_EQ(packet.stamp_ns, 1'700'000'000'250'000'000);
+  const LidarReturn& p = packet.returns[0];
+  EXPECT_NEAR(p.z, 10 * std::sin(radians(15)), 1e-4);
+  EXPECT_NEAR(std::hypot(p.x, p.y), 10 * std::cos(radians(15)) + 0.03498, 1e-4);
+  EXPECT_NEAR(p.time_us, 5 * 55.56 + 45.15, 1e-3);
+
+  const auto small = deviceKind("helios16").make("");
+  EXPECT_EQ(small->decode(difopOf(32, -1600, 100)).warnings.size(), 1U) << "of the other model";
+  EXPECT_TRUE(small->decode(difopOf(16, -1500, 200)).warnings.empty());
+  const DecodedPacket second = small->decode(bytes);
+  ASSERT_EQ(second.returns.size(), 1U);
+  EXPECT_NEAR(second.returns[0].time_us, 5 * 2 * 55.56 + 55.56 + 43.91, 1e-3);
+  EXPECT_THROW(deviceKind("rs32").make("")->decode(bytes), DataError);
+  EXPECT_THROW(small->decode(msop(1, 20)), DataError);
+}
+
+TEST(RoboSense, AReturnOfABpearlLiesWhereItsLayoutSays) {
+  std::string bytes = msop(3, 20);
+  putDistance(bytes, 0, 0, 2000);  // 10 m
+  const auto decoder = deviceKind("bpearl").make("");
+  EXPECT_EQ(decoder->decode(difopOf(32, -1600, 100)).warnings.size(), 1U) << "of another model";
+  EXPECT_TRUE(decoder->decode(difopOf(32, 231, 280)).warnings.empty());
+  const DecodedPacket packet = decoder->decode(bytes);
+  ASSERT_EQ(packet.returns.size(), 1U);
+  EXPECT_NEAR(packet.returns[0].z, 10 * std::sin(radians(2.31)) + 0.09427, 1e-4);
+  EXPECT_NEAR(std::hypot(packet.returns[0].x, packet.returns[0].y),
+              10 * std::cos(radians(2.31)) + 0.01473, 1e-4);
+  bytes[31] = '\4';
+  EXPECT_THROW(decoder->decode(bytes), DataError);
+}
+
 }  // namespace
 }  // namespace perception
