@@ -3,7 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstddef>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "libperception/sensors/frames/ToObservation.h"
@@ -61,6 +63,15 @@ TEST(Findings, ReturnsSecondsOutsideOfTheirScanAreAFault) {
   expectTold(toldOf({scanAt("L", 0), scanAt("L", 0.1, 5), scanAt("L", 0.2, -3)}),
              "FAULT L: returns lie more than 1.05 s outside of 2 of 3 scans");
   EXPECT_EQ(toldOf({scanAt("L", 0, -0.05)}).find("outside"), std::string::npos);
+}
+
+TEST(Findings, PlacesThatStandForNoReturnAreAFault) {
+  SensorFrame frame = scanAt("L", 0);
+  auto& cloud = std::get<LidarCloud>(frame.data);
+  for (int i = 0; i < 30; ++i) cloud.x[static_cast<std::size_t>(3 * i)] = 1e6F;
+  expectTold(toldOf({frame, scanAt("L", 0.1)}),
+             "FAULT L: 30 points are no returns: they lie farther than 1000 m");
+  EXPECT_EQ(toldOf({scanAt("L", 0)}).find("no returns"), std::string::npos);
 }
 
 TEST(Findings, ASensorOfAnotherTimeThanAllOthersIsAFault) {

@@ -46,12 +46,11 @@ class ScanOdditiesRun : public OddRecording {
     return plan;
   }
   void expectCleared(const LidarCloud& got) {
-    const LidarCloud expected = withNothing(3, 0);
-    ASSERT_EQ(got.size(), expected.size());
-    for (std::size_t i = 0; i < got.size(); ++i) {
-      EXPECT_EQ(std::isfinite(got.x[i]), i % 3 != 0) << i;
-      if (i % 3 != 0) EXPECT_EQ(got.x[i], expected.x[i]);
-    }
+    std::vector<float> expected;  // of a log's points without a place the reader says nothing
+    const LidarCloud turn = oneTurn(3);
+    for (std::size_t i = 0; i < turn.size(); ++i)
+      if (i % 3 != 0) expected.push_back(turn.x[i]);
+    EXPECT_EQ(got.x, expected);
   }
 };
 

@@ -7,6 +7,8 @@
 #include <cstring>
 #include <map>
 
+#include "libperception/measurement/frames/NoReturns.h"
+
 namespace perception {
 namespace {
 
@@ -18,7 +20,6 @@ constexpr std::size_t kMostNumbers = 1U << 18;  // of a scan that are looked at
 constexpr std::size_t kSizes = 40;              // bins of the size of a number
 constexpr double kLeastInformation = 0.1;       // [nats]
 constexpr double kAsGood = 0.8;  // of the most information, that the least number of columns has
-constexpr double kFarthestReturn = 1000;  // [m] of a coordinate
 constexpr double kLeastSpread = 0.2;  // [m] between the 5 % and the 95 % quantile of a coordinate
 constexpr double kMostRings = 256;
 constexpr double kOddWords = 0.05;  // share of the words of float64 that no float32 has

@@ -72,15 +72,10 @@ TEST_F(OddPoints, PaddingRowsAndOrderOfPointsChangeNothing) {
     const auto frames = framesOf("points");
     ASSERT_EQ(frames.size(), 20U);
     const auto& cloud = std::get<LidarCloud>(frames[4].data);
-    ASSERT_EQ(cloud.size(), 48U);
-    ASSERT_EQ(cloud.time_offset.size(), 48U) << "times of no returns do not matter";
-    std::size_t returns = 0;
-    for (std::size_t i = 0; i < cloud.size(); ++i) {
-      if (!std::isfinite(cloud.x[i])) continue;
-      ++returns;
+    ASSERT_EQ(cloud.size(), 44U);
+    ASSERT_EQ(cloud.time_offset.size(), 44U) << "times of no returns do not matter";
+    for (std::size_t i = 0; i < cloud.size(); ++i)
       EXPECT_NEAR(cloud.time_offset[i], 0.008 * static_cast<double>(cloud.y[i]), 1e-5);
-    }
-    EXPECT_EQ(returns, 44U);
   }
 }
 

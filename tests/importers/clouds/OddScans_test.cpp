@@ -25,7 +25,7 @@ using namespace test;
 
 constexpr int kFiles = 12;
 
-std::string floatsOf(const LidarCloud& cloud) {
+std::string rowsOf(const LidarCloud& cloud) {
   std::string bytes;
   for (std::size_t i = 0; i < cloud.size(); ++i)
     for (const float v : {cloud.x[i], cloud.y[i], cloud.z[i], cloud.intensity[i]})
@@ -38,7 +38,7 @@ std::string pcdOf(const LidarCloud& cloud, const std::string& viewpoint = "0 0 0
              "VERSION .7\nFIELDS x y z intensity\nSIZE 4 4 4 4\nTYPE F F F F\nCOUNT 1 1 1 1\n"
              "WIDTH {0}\nHEIGHT 1\nVIEWPOINT {1}\nPOINTS {0}\nDATA binary\n",
              cloud.size(), viewpoint) +
-         floatsOf(cloud);
+         rowsOf(cloud);
 }
 
 /// A line of 12 numbers, or of all 16.
@@ -180,7 +180,7 @@ TEST_F(OddScans, CoordinatesInWholeNumbersHaveNoUnitAndAreRefused) {
 }
 
 TEST_F(OddScans, BinariesOfTheOtherByteOrderAreRefused) {
-  std::string bytes = floatsOf(oneTurn(0));
+  std::string bytes = rowsOf(oneTurn(0));
   for (std::size_t i = 0; i < bytes.size(); i += 4)
     std::reverse(bytes.begin() + static_cast<std::ptrdiff_t>(i),
                  bytes.begin() + static_cast<std::ptrdiff_t>(i + 4));
@@ -212,9 +212,9 @@ TEST_F(OddScans, TimesAreAfterTheEarliestReturnWhereverItIs) {
     const auto frames = framesOf("LIDAR_TOP");
     ASSERT_EQ(frames.size(), 1U);
     const auto& cloud = std::get<LidarCloud>(frames[0].data);
-    ASSERT_EQ(cloud.time_offset.size(), 200U) << what;
+    ASSERT_GE(cloud.time_offset.size(), 194U) << what;
     float least = 1, most = -1;
-    for (std::size_t i = 6; i < 200; ++i)
+    for (std::size_t i = 0; i < cloud.size(); ++i)
       least = std::min(least, cloud.time_offset[i]), most = std::max(most, cloud.time_offset[i]);
     EXPECT_NEAR(least, 0, 1e-6) << what;
     EXPECT_GT(most, 0.09) << what;

@@ -29,11 +29,11 @@ LidarCloud scanOf(const std::function<double(int beam, int column)>& range) {
   return cloud;
 }
 
-/// Beams that look down meet the ground, others a wall ahead within 60 deg; else nothing.
+/// Beams that look down meet the ground, others a wall ahead within 59 deg; else nothing.
 double street(int beam, int column, double nothing) {
   const double e = radians(2.0 * beam - 15), a = radians(column);
   if (e < 0) return 1.7 / std::sin(-e);
-  return std::cos(a) > 0.5 ? 30 / std::cos(a) / std::cos(e) : nothing;
+  return std::cos(a) > 0.51 ? 30 / std::cos(a) / std::cos(e) : nothing;
 }
 
 std::size_t nothingIn(const LidarCloud& cloud) { return noReturnsOf(cloud).points.size(); }
