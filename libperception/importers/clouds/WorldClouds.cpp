@@ -37,9 +37,11 @@ bool liesAbout(const Vector3& place, const LidarCloud& cloud) {
 }  // namespace
 
 bool areInWorld(const std::vector<PlacedFile>& scans, const CloudFormat& format) {
+  double most = kFarFromOrigin;
+  for (const PlacedFile& scan : scans) most = std::max(most, scan.place.norm() / 2);
   std::vector<PlacedFile> far;
   std::copy_if(scans.begin(), scans.end(), std::back_inserter(far),
-               [](const PlacedFile& scan) { return scan.place.norm() >= kFarFromOrigin; });
+               [&](const PlacedFile& scan) { return scan.place.norm() >= most; });
   if (far.size() < kLeastFar) return false;
   for (std::size_t n = 0; n < kLookedAt; ++n) {
     const PlacedFile& scan = far[n * (far.size() - 1) / (kLookedAt - 1)];

@@ -13,15 +13,20 @@ constexpr double kSame = 2e-3, kSameShare = 1e-5;  // [m], of the range: equal
 constexpr double kShare = 0.05;                    // of the returns
 constexpr std::size_t kLeast = 50;                 // points
 constexpr std::size_t kLeastOthers = 10;           // points that are nearer: else it is no scene
+constexpr double kGap = 0.02, kInGap = 0.1;        // of the range, of the points
 constexpr double kElevations = 0.02, kHorizon = 1e-3;  // [rad]
 constexpr double kAlike = 0.01;  // of ranges: one number for all that is nothing
 
-/// Points as far away as the farthest.
+/// Points as far away as the farthest; none, if others are hardly nearer.
 std::vector<std::size_t> pointsAt(const std::vector<double>& ranges, double farthest) {
   const double same = farthest - std::max(kSame, kSameShare * farthest);
   std::vector<std::size_t> points;
-  for (std::size_t i = 0; i < ranges.size(); ++i)
+  std::size_t below = 0;
+  for (std::size_t i = 0; i < ranges.size(); ++i) {
     if (ranges[i] >= same && ranges[i] <= farthest) points.push_back(i);
+    below += ranges[i] >= (1 - kGap) * farthest && ranges[i] < same;
+  }
+  if (static_cast<double>(below) > kInGap * static_cast<double>(points.size())) points.clear();
   return points;
 }
 

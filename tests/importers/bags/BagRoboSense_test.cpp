@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <fstream>
 #include <string>
@@ -69,7 +70,8 @@ class BagRoboSense : public test::ImportRun {
     assembler.finish();
     return scans;
   }
-  void expectScans(const std::string& label, const std::vector<SensorFrame>& expected) {
+  void expectScans(const std::string& label, const std::vector<SensorFrame>& expected,
+                   std::size_t least = 5000) {
     const auto got = framesOf(label);
     ASSERT_EQ(got.size(), expected.size()) << error_;
     ASSERT_GE(got.size(), 3U);
@@ -80,7 +82,7 @@ class BagRoboSense : public test::ImportRun {
       EXPECT_EQ(a.z, b.z);
       EXPECT_EQ(a.ring, b.ring);
     }
-    EXPECT_GT(std::get<LidarCloud>(got[1].data).size(), 5000U);
+    EXPECT_GT(std::get<LidarCloud>(got[1].data).size(), least);
   }
 };
 
@@ -135,7 +137,7 @@ TEST_F(BagRoboSense, OtherModelsAreToldByTheirPacketsAndAngles) {
     writer.write(own, Stamp{kRsBegin}, ros::encoded(said, ros::Encoding::kCdr));
     writer.close();
     ASSERT_EQ(import("bag", {"--bag", file("drive.mcap")}), 3) << error_;
-    expectScans("rslidar_packets", scansOf(device, file("unit.difop"), packets));
+    expectScans("rslidar_packets", scansOf(device, file("unit.difop"), packets), 1000);
   }
 }
 

@@ -81,7 +81,7 @@ TEST_F(MoveReturns, ScansInAFrameOfTransformsAreMovedBackToTheVehicle) {
   expectSaid("taken to be at \"base_link\" ([topic./points] pose says where it is)");
   expectMovedBack(framesOf("points"), Pose3::Identity());
 
-  write("bag.ini", "[topic./points]\npose = 0.5 0 1.8 90 0 0\n");
+  write("bag.ini", "[topic./points]\npose = 0.5, 0, 1.8, 90, 0, 0\n");
   ASSERT_EQ(import("bag", {"--bag", file("drive.mcap"), "-c", file("bag.ini")}), 0) << error_;
   expectMovedBack(framesOf("points"), makePose(0.5, 0, 1.8, radians(90)));
 }

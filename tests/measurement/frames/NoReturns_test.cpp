@@ -103,6 +103,7 @@ TEST(NoReturns, RealReturnsStay) {
 TEST(NoReturns, ASphereAroundTheSensorAndAShortRangeAreNoLimit) {
   EXPECT_EQ(nothingIn(scanOf([](int, int) { return 30; })), 0U);
   EXPECT_EQ(nothingIn(scanOf([](int beam, int) { return beam < 8 ? 3 : 12; })), 0U);
+  EXPECT_EQ(nothingIn(scanOf([](int beam, int) { return 30 + 0.01 * (beam % 8); })), 0U);
   EXPECT_EQ(nothingIn(LidarCloud()), 0U);
 }
 
