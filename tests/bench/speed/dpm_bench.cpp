@@ -21,6 +21,7 @@
 #include "libperception/detection/DetectLabels.h"
 #include "libperception/detectors/ImageDetector.h"
 #include "libperception/importers/kitti/KittiFiles.h"
+#include "libperception/simd/Simd.h"
 
 namespace {
 
