@@ -87,8 +87,7 @@ class ImportLog {
   /// applies.
   void ego(Stamp stamp, const Pose3& T_world_ego, const PoseUncertainty& uncertainty = {0, 0, 0});
   void frame(Stamp stamp, std::int64_t number);
-  /// Doubled messages are left out and counted. Scans are
-  /// mended (ScanOddities).
+  /// Doubled messages are left out and counted. Scans are mended (ScanOddities).
   void sensor(const SensorFrame& frame);
   /// The same of a frame that has no more than this. `T_ego_sensor` is the sensor's mounting.
   void sensor(const std::string& label, Stamp stamp, const Pose3& T_ego_sensor,

@@ -6,6 +6,7 @@
 
 namespace perception {
 
+/// Allocates as std::allocator does, but leaves elements without arguments unset.
 template <class T>
 struct RawAllocator : std::allocator<T> {
   template <class Other>

@@ -55,7 +55,7 @@ struct ClassTable {
   const ObjectClass& operator[](ClassId c) const { return classes[static_cast<std::size_t>(c)]; }
   /// The class of that name or -1.
   ClassId find(const std::string& name) const;
-  std::vector<std::string> names() const;
+  std::vector<std::string> names() const;  ///< in their order
 };
 
 /// Reads every [class.NAME] of the configuration; reports to it when there is none. Priors are

@@ -10,7 +10,7 @@
 namespace perception {
 
 /// How the models differ. Byte 30 of a packet names the model, but for the Helios, whose packets
-/// begin otherwise. The layouts of Helios and BPearl are from memory of the maker's published
+/// begin otherwise. The layouts of Helios and Bpearl are from memory of the maker's published
 /// driver: they were not tried on a recording.
 struct RoboSenseModel {
   const char* name;

@@ -17,7 +17,7 @@ struct PathAhead {
   bool known = false;  ///< false: no lidar scan within half a second
   Corridor corridor;
   FreeDistance free;        ///< `distance` is that of the obstacle, seen up to there or not
-  bool in_cloud = false;    ///< most returns up to the obstacle are doubted, no surface is sure
+  bool in_cloud = false;    ///< most returns up to it are doubted, and it is no sure surface
   bool by_returns = false;  ///< of one scan, and not by occupied cells
   std::uint32_t returns = 0, overruled = 0;  ///< as FreePath
 };
