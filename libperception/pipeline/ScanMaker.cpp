@@ -64,6 +64,7 @@ MeasurementScan ScanMaker::measure(std::size_t sensor, SensorFrame& frame) {
   const auto trust = weighReturns(sensor, frame);
   const double not_clear = trust ? weather_.notClear(frame.sensor) : 0;
   frame.causes.weather = not_clear > kNegligible ? not_clear : 0;
+  if (trust) frame.causes.clouds = weather_.clouds(frame.sensor, frame.T_world_sensor());
   MeasurementScan scan;
   {
     const auto scope = timing_.stage(setup_.sensors[sensor].params.kind.c_str());

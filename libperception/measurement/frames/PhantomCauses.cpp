@@ -7,11 +7,14 @@ constexpr double kWake = 0.9;  // the least existence of a track that leaves a w
 
 }  // namespace
 
-bool PhantomCauses::any() const { return weather > 0 || (wakes != nullptr && !wakes->empty()); }
+bool PhantomCauses::any() const {
+  return weather > 0 || clouds != nullptr || (wakes != nullptr && !wakes->empty());
+}
 
 CausesHere PhantomCauses::at(const Vector2& place, Stamp now) const {
   const bool left = wakes != nullptr && wakes->hasLeft(place, now);
-  return {weather, left ? kWake : 0};
+  const double air = clouds != nullptr ? std::max(weather, clouds->at(place)) : weather;
+  return {air, left ? kWake : 0};
 }
 
 }  // namespace perception

@@ -4,13 +4,14 @@
 
 #include "libperception/core/Frames.h"
 #include "libperception/core/Time.h"
+#include "libperception/measurement/frames/AirClouds.h"
 #include "libperception/measurement/frames/WakeMap.h"
 
 namespace perception {
 
 /// Probabilities [0, 1] that something makes phantoms at a place.
 struct CausesHere {
-  double weather = 0;  ///< the air is not clear
+  double weather = 0;  ///< the air is not clear, everywhere or at the place
   double wake = 0;     ///< a vehicle has just left the place
   double likelier() const { return std::max(weather, wake); }
 };
@@ -18,8 +19,9 @@ struct CausesHere {
 /// What may make phantoms of a lidar's returns at the instant of a scan, as the sensors themselves
 /// show it: no return is doubted beyond the probability of such a cause (method.md 8.4).
 struct PhantomCauses {
-  double weather = 0;                    ///< [0, 1] P(the air is not clear)
-  std::shared_ptr<const WakeMap> wakes;  ///< of tracked vehicles; null: none
+  double weather = 0;                       ///< [0, 1] P(the air is not clear), everywhere
+  std::shared_ptr<const AirClouds> clouds;  ///< that the lidar sees near by; null: none
+  std::shared_ptr<const WakeMap> wakes;     ///< of tracked vehicles; null: none
 
   /// False: every return counts in full.
   bool any() const;

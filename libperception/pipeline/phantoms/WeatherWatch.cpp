@@ -72,6 +72,12 @@ double WeatherWatch::notClear(const std::string& sensor) const {
   return found == lidars_.end() ? 0 : found->second.not_clear;
 }
 
+std::shared_ptr<const AirClouds> WeatherWatch::clouds(const std::string& sensor,
+                                                      const Pose3& T_world_sensor) const {
+  const auto found = lidars_.find(sensor);
+  return found == lidars_.end() ? nullptr : found->second.estimator.clouds(T_world_sensor);
+}
+
 std::vector<WeatherRow> WeatherWatch::take() { return std::exchange(rows_, {}); }
 
 WeatherFile::WeatherFile(const std::string& path, Stamp first_stamp)

@@ -1,5 +1,6 @@
 #pragma once
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -34,6 +35,9 @@ class WeatherWatch {
   double clear() const { return clear_; }  ///< probability of clear air at the last scan
   /// P(the air is not clear) at this lidar's last scan; 0 for one whose returns are not weighed.
   double notClear(const std::string& sensor) const;
+  /// The clouds that this lidar sees near by, from its pose at the last scan; null: hardly any.
+  std::shared_ptr<const AirClouds> clouds(const std::string& sensor,
+                                          const Pose3& T_world_sensor) const;
   double fog() const { return fog_; }  ///< probability of fog at the last scan
   /// Rows since the last call.
   std::vector<WeatherRow> take();

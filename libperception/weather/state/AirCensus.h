@@ -2,6 +2,7 @@
 #include <array>
 #include <cstddef>
 
+#include "libperception/measurement/frames/AirClouds.h"
 #include "libperception/measurement/frames/SensorFrame.h"
 #include "libperception/weather/trust/SuspectReturns.h"
 
@@ -10,7 +11,7 @@ namespace perception {
 /// Returns of a lidar scan counted by direction, height and range: what WeatherState tells the
 /// weather from (method.md 9.10). Directions are relative to the ground plane.
 struct AirCensus {
-  static constexpr std::size_t kSectors = 24;  ///< of 15 deg of azimuth
+  static constexpr std::size_t kSectors = AirClouds::kSectors;
   /// [m] edges of the shells in which returns in free air are counted.
   static constexpr std::array<float, 6> kShells = {1.5F, 2.5F, 4, 6, 10, 20};
   static constexpr std::size_t kShellCount = kShells.size() - 1;

@@ -28,6 +28,10 @@ constexpr double kSnowShare = 50e-4;  // of beams within 10 m: 50 mm/h of rain b
 constexpr double kLeastSeen = 0.25;   // of the best sector's returns: the sensor looks there
 constexpr double kLeastReturns = 1000;
 constexpr std::size_t kOpenBin = 12;  // 24 m
+/// Share of a sector's returns that stand alone in free air within 10 m, from which they are
+/// likelier a cloud than plants, and the exponent of the odds by it (method.md 9.10).
+constexpr double kCloud = 400e-4, kCloudExponent = 4;
+constexpr double kHardlyCloud = 0.1;  // P that changes no decision
 
 double clampEvidence(double v) { return std::clamp(v, -kMostEvidence, kMostEvidence); }
 
@@ -53,6 +57,15 @@ double reachOf(const std::array<double, AirCensus::kReachBins>& bins) {
   return 0;
 }
 
+// P(a cloud hangs in a sector), by its returns or, where it had more, `usual` of them.
+double cloudOf(const Sector& sector, double usual) {
+  double lone = 0;
+  for (std::size_t k = 0; k + 1 < kShells; ++k) lone += sector.lone[k];
+  const double share = lone / std::max({sector.returns, usual, 1.0});
+  const double odds = std::pow(share / kCloud, kCloudExponent);
+  return odds / (1 + odds);
+}
+
 }  // namespace
 
 const char* nameOf(WeatherType type) {
@@ -75,6 +88,7 @@ void WeatherEstimator::add(const AirCensus& census, Stamp stamp) {
   const bool first = !last_ || dt > kGap || dt < 0;
   if (first) restart();
   last_ = stamp;
+  now_ = census.sectors;
   blend(census, first, dt);
   for (std::size_t s = 0; s < kSectors; ++s) {
     seen_[s] = std::max(seen_[s], census.sectors[s].returns);
@@ -182,6 +196,21 @@ WeatherState WeatherEstimator::state() const {
   state.snow_mm_h = rates_.snow(all);
   state.visibility = visibilityOfReach(now.reach);
   return state;
+}
+
+// A cloud fades out: the sectors beside it count, too.
+std::shared_ptr<const AirClouds> WeatherEstimator::clouds(const Pose3& T_world_sensor) const {
+  const double usual = kLeastSeen * *std::max_element(seen_.begin(), seen_.end());
+  std::array<double, kSectors> own{};
+  for (std::size_t s = 0; s < kSectors; ++s)
+    own[s] = std::max(cloudOf(now_[s], usual), cloudOf(brief_.sectors[s], usual));
+  if (*std::max_element(own.begin(), own.end()) < kHardlyCloud) return nullptr;
+  auto clouds = std::make_shared<AirClouds>();
+  clouds->T_sensor_world = T_world_sensor.inverse();
+  for (std::size_t s = 0; s < kSectors; ++s)
+    clouds->probability[s] =
+        std::max({own[(s + kSectors - 1) % kSectors], own[s], own[(s + 1) % kSectors]});
+  return clouds;
 }
 
 }  // namespace perception

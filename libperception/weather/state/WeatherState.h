@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <memory>
 #include <optional>
 
 #include "libperception/core/Time.h"
@@ -38,6 +39,9 @@ class WeatherEstimator {
   /// Scans in order of time; after a gap of 5 s it starts anew.
   void add(const AirCensus& census, Stamp stamp);
   WeatherState state() const;
+  /// The clouds that the lidar sees near by, in the last scan or in the last second, for a scan
+  /// from that pose; null: hardly any.
+  std::shared_ptr<const AirClouds> clouds(const Pose3& T_world_sensor) const;
 
  private:
   /// What scans showed lately: means that forget.
@@ -64,8 +68,9 @@ class WeatherEstimator {
   void follow(const Signs& signs, double dt);
 
   std::optional<Stamp> last_;
-  Means brief_, long_;                              ///< of a second and of ten
-  std::array<double, AirCensus::kSectors> seen_{};  ///< most returns of a scan
+  Means brief_, long_;                                        ///< of a second and of ten
+  std::array<AirCensus::Sector, AirCensus::kSectors> now_{};  ///< of the last scan
+  std::array<double, AirCensus::kSectors> seen_{};            ///< most returns of a scan
   double most_level_ = 0;
   std::array<double, 3> log_p_{};  ///< logs of the probabilities: clear, precipitation, fog
   PrecipitationRate rates_;

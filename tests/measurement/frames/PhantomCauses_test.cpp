@@ -20,6 +20,19 @@ TEST(PhantomCauses, TheWeatherIsEverywhere) {
   EXPECT_EQ(causes.at({5, 0}, Stamp{}).likelier(), 0.7);
 }
 
+TEST(PhantomCauses, ACloudIsInItsSectorAndNearTheSensor) {
+  auto clouds = std::make_shared<AirClouds>();
+  clouds->T_sensor_world = makePose(100, 50, 1.7, kPi / 2).inverse();
+  clouds->probability[AirClouds::kSectors / 2] = 0.9;  // 0 to 15 deg to the left of its x
+  PhantomCauses causes;
+  causes.weather = 0.1;
+  causes.clouds = clouds;
+  EXPECT_TRUE(causes.any());
+  EXPECT_EQ(causes.at({99, 60}, Stamp{}).weather, 0.9) << "10 m ahead of the sensor";
+  EXPECT_EQ(causes.at({101, 60}, Stamp{}).weather, 0.1) << "to its right";
+  EXPECT_EQ(causes.at({98, 75}, Stamp{}).weather, 0.1) << "25 m ahead";
+}
+
 TEST(PhantomCauses, AWakeIsWhereAVehicleWasAndIsNoMore) {
   auto wakes = std::make_shared<WakeMap>();
   VehicleFootprint car;

@@ -53,6 +53,29 @@ TEST(WeatherState, PlantsInThreeQuartersOfTheSectorsAreNoWeather) {
   EXPECT_EQ(after(census, 5).type(), WeatherType::kClear);
 }
 
+TEST(WeatherState, SprayBesideTheVehicleIsACloudInItsSectorsAtOnce) {
+  AirCensus census = street();
+  census.sectors[5].lone = {0, 0.03 * 4000, 0.05 * 4000, 0.02 * 4000, 0};
+  WeatherEstimator estimator;
+  estimator.add(street(), Stamp{1'000'000'000});
+  EXPECT_EQ(estimator.clouds(Pose3::Identity()), nullptr);
+  estimator.add(census, Stamp{1'100'000'000});
+  const auto clouds = estimator.clouds(Pose3::Identity());
+  ASSERT_NE(clouds, nullptr);
+  EXPECT_GT(clouds->probability[5], 0.9);
+  EXPECT_GT(clouds->probability[6], 0.9) << "a cloud fades out";
+  EXPECT_EQ(clouds->probability[8], 0);
+  EXPECT_GT(estimator.state().of(WeatherType::kClear), 0.9) << "a cloud is no weather";
+}
+
+TEST(WeatherState, PlantsAsInClearRecordingsAreNoCloud) {
+  AirCensus census = street();
+  census.sectors[3].lone = {10e-4 * 4000, 20e-4 * 4000, 60e-4 * 4000, 80e-4 * 4000, 400e-4 * 4000};
+  WeatherEstimator estimator;
+  estimator.add(census, Stamp{1'000'000'000});
+  EXPECT_EQ(estimator.clouds(Pose3::Identity()), nullptr);
+}
+
 TEST(WeatherState, OneScanDecidesNothing) {
   EXPECT_EQ(after(with({20e-4, 20e-4, 40e-4, 80e-4, 40e-4}), 0).type(), WeatherType::kClear);
 }
