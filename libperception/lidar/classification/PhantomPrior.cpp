@@ -10,7 +10,7 @@ namespace {
 constexpr auto kThingKind = static_cast<std::size_t>(ClusterKind::kThing);
 constexpr auto kPhantomKind = static_cast<std::size_t>(ClusterKind::kPhantom);
 
-/// In precipitation or fog, and where a vehicle has just driven on a wet road.
+/// In precipitation, fog or a cloud, and where a vehicle has just driven on a wet road.
 constexpr double kInWeather = 0.1, kInWake = 0.8;
 
 }  // namespace
@@ -19,7 +19,8 @@ PhantomPrior::PhantomPrior(const Probabilities& learned)
     : learned_(learned[kPhantomKind] / (learned[kPhantomKind] + learned[kThingKind])) {}
 
 double PhantomPrior::share(const CausesHere& causes) const {
-  const double air = learned_ + causes.weather * std::max(0.0, kInWeather - learned_);
+  const double not_clear = std::max(causes.weather, causes.cloud);
+  const double air = learned_ + not_clear * std::max(0.0, kInWeather - learned_);
   return air + causes.wake * std::max(0.0, kInWake - air);
 }
 

@@ -13,8 +13,7 @@ bool PhantomCauses::any() const {
 
 CausesHere PhantomCauses::at(const Vector2& place, Stamp now) const {
   const bool left = wakes != nullptr && wakes->hasLeft(place, now);
-  const double air = clouds != nullptr ? std::max(weather, clouds->at(place)) : weather;
-  return {air, left ? kWake : 0};
+  return {weather, clouds != nullptr ? clouds->at(place) : 0, left ? kWake : 0};
 }
 
 }  // namespace perception

@@ -11,9 +11,12 @@ namespace perception {
 
 /// Probabilities [0, 1] that something makes phantoms at a place.
 struct CausesHere {
-  double weather = 0;  ///< the air is not clear, everywhere or at the place
+  double weather = 0;  ///< the air is not clear, everywhere
+  double cloud = 0;    ///< the lidar sees a cloud there
   double wake = 0;     ///< a vehicle has just left the place
-  double likelier() const { return std::max(weather, wake); }
+  double likelier() const { return std::max({weather, cloud, wake}); }
+  /// Whether likely a cloud hangs there, whose returns may lie as close together as a wall's.
+  bool inCloud() const { return std::max(cloud, wake) > 0.5; }
 };
 
 /// What may make phantoms of a lidar's returns at the instant of a scan, as the sensors themselves

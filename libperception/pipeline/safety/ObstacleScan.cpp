@@ -22,8 +22,8 @@ constexpr double kHardly = 0.05;  // doubt that needs no cause, for it decides n
 /// that from which it may be of one: the corner of a surface fills four in nine, among flakes an
 /// edge 15 in 25 (assumed).
 constexpr float kWall = 0.75F, kPerhapsSurface = 0.4F, kPerhapsAmongFlakes = 0.55F;
-/// The same in a wake, whose cloud ends most directions, too: there it has to be seen twice.
-constexpr float kWallInWake = 0.9F;
+/// The same in a wake or a cloud, which ends most directions, too: there it has to be seen twice.
+constexpr float kWallInCloud = 0.9F;
 
 // The vehicle on the ground plane: z = 0 is the ground.
 Pose3 groundPose(const Pose3& T_world_ego, const GroundPlane& plane) {
@@ -61,8 +61,8 @@ class Doubter {
     const float solid = returns_.solid.empty() ? PlacedReturns::kFewDirections : returns_.solid[i];
     float held = std::min(doubt, static_cast<float>(cause));
     if (weighted_) held = std::max(held, std::min(doubt, verdictOn(i)));
-    const bool in_wake = here.wake > 0;
-    const bool wall = !in_wake && solid >= kWall && trust > 0;
+    const bool in_cloud = here.inCloud();
+    const bool wall = !in_cloud && solid >= kWall && trust > 0;
     if (wall) held = 0;
     const float weight = 1 - held;
     const float lone = alone && solid < kWall ? static_cast<float>(cause) : 0;
@@ -72,7 +72,7 @@ class Doubter {
     obstacles.doubted[hit] = doubt >= kDoubted;
     if (!caused_) return;
     obstacles.surface[hit] =
-        dense < 1 && trust > 0 && solid >= (in_wake ? kWallInWake : perhapsSurface(i));
+        dense < 1 && trust > 0 && solid >= (in_cloud ? kWallInCloud : perhapsSurface(i));
     obstacles.solid[hit] = wall;
   }
 

@@ -21,8 +21,8 @@ struct ObstacleScan {
   std::vector<char> doubted;  ///< by trust or shape, whether there is a cause for it or not
   /// May be a surface, though it has a cause to be doubted; empty: nothing may make phantoms.
   std::vector<char> surface;
-  /// It lies outside wakes, and most directions about it end there, which ended its doubt in this
-  /// scan. Empty where `surface` is.
+  /// It lies outside wakes and clouds, and most directions about it end there, which ended its
+  /// doubt in this scan. Empty where `surface` is.
   std::vector<char> solid;
   RoadHeights road;  ///< by the ground returns
 };

@@ -35,8 +35,8 @@ TEST(PhantomPrior, ACauseMakesWhatLooksLikeSpraySurer) {
 
 TEST(PhantomPrior, GrowsWithTheProbabilityOfTheCause) {
   const PhantomPrior prior(kLearned);
-  CausesHere causes;
-  for (double CausesHere::*cause : {&CausesHere::weather, &CausesHere::wake}) {
+  for (double CausesHere::*cause : {&CausesHere::weather, &CausesHere::cloud, &CausesHere::wake}) {
+    CausesHere causes;
     double before = prior(kSpray, causes)[kPhantom];
     for (const double probability : {0.1, 0.5, 0.9}) {
       causes.*cause = probability;

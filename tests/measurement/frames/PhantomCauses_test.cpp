@@ -28,9 +28,12 @@ TEST(PhantomCauses, ACloudIsInItsSectorAndNearTheSensor) {
   causes.weather = 0.1;
   causes.clouds = clouds;
   EXPECT_TRUE(causes.any());
-  EXPECT_EQ(causes.at({99, 60}, Stamp{}).weather, 0.9) << "10 m ahead of the sensor";
-  EXPECT_EQ(causes.at({101, 60}, Stamp{}).weather, 0.1) << "to its right";
-  EXPECT_EQ(causes.at({98, 75}, Stamp{}).weather, 0.1) << "25 m ahead";
+  EXPECT_EQ(causes.at({99, 60}, Stamp{}).cloud, 0.9) << "10 m ahead of the sensor";
+  EXPECT_TRUE(causes.at({99, 60}, Stamp{}).inCloud());
+  EXPECT_EQ(causes.at({99, 60}, Stamp{}).likelier(), 0.9);
+  EXPECT_EQ(causes.at({101, 60}, Stamp{}).cloud, 0) << "to its right";
+  EXPECT_EQ(causes.at({101, 60}, Stamp{}).likelier(), 0.1) << "the weather alone";
+  EXPECT_EQ(causes.at({98, 75}, Stamp{}).cloud, 0) << "25 m ahead";
 }
 
 TEST(PhantomCauses, AWakeIsWhereAVehicleWasAndIsNoMore) {

@@ -137,6 +137,25 @@ TEST(ObstacleScan, InAWakeOnlyWhatIsSolidTwiceEndsTheDoubt) {
   EXPECT_FALSE(blocked(2, 0.8F));
 }
 
+TEST(ObstacleScan, InACloudBesideTheVehicleOnlyWhatIsSolidTwiceEndsTheDoubt) {
+  auto clouds = std::make_shared<AirClouds>();
+  clouds->probability.fill(0.9);
+  const auto blocked = [&](int scans, float solid, bool cloud) {
+    return afterScans(scans, 0,
+                      [&](BoxScan& scan) {
+                        for (float& x : scan.returns.x) x -= 12;
+                        if (cloud) scan.frame.causes.clouds = clouds;
+                        scan.returns.phantom.assign(scan.returns.size(), 0.99F);
+                        scan.solid(solid);
+                      })
+        .free.blocked;
+  };
+  EXPECT_TRUE(blocked(1, 0.1F, false)) << "in clear air every return counts";
+  EXPECT_FALSE(blocked(3, 0.1F, true));
+  EXPECT_FALSE(blocked(1, 1, true));
+  EXPECT_TRUE(blocked(2, 1, true));
+}
+
 TEST(ObstacleScan, InWeatherOneScanBlocksOnlyByItsClusters) {
   const auto loose = [](BoxScan& scan) {
     scan.returns.phantom.assign(scan.returns.size(), PlacedReturns::kNoCluster);
