@@ -30,8 +30,8 @@ constexpr double kLeastReturns = 1000;
 constexpr std::size_t kOpenBin = 12;  // 24 m
 /// Share of a sector's returns that stand alone in free air within 10 m, from which they are
 /// likelier a cloud than plants, and the exponent of the odds by it (method.md 9.10).
-constexpr double kCloud = 400e-4, kCloudExponent = 4;
-constexpr double kHardlyCloud = 0.1;  // P that changes no decision
+constexpr double kCloud = 550e-4, kCloudExponent = 4;
+constexpr double kHardlyCloud = 0.2;  // P that changes no decision
 
 double clampEvidence(double v) { return std::clamp(v, -kMostEvidence, kMostEvidence); }
 

@@ -13,7 +13,7 @@ using Probabilities = PhantomPrior::Probabilities;
 constexpr Probabilities kLearned = {0.02, 0.02, 0.06, 0.792, 0.008, 0.1};
 constexpr Probabilities kSpray = {0, 0, 0.02, 0.5, 0.46, 0.02};
 constexpr Probabilities kWall = {0, 0, 0.02, 0.97, 0.001, 0.009};
-constexpr CausesHere kWake{0, 0.9};
+constexpr CausesHere kWake{0, 0, 0.9};
 constexpr std::size_t kThing = 3, kPhantom = 4;
 
 TEST(PhantomPrior, WithoutACauseClustersAreJudgedAsTheyWereLearned) {
