@@ -15,8 +15,9 @@ struct CausesHere {
   double cloud = 0;    ///< the lidar sees a cloud there
   double wake = 0;     ///< a vehicle has just left the place
   double likelier() const { return std::max({weather, cloud, wake}); }
-  /// Whether likely a cloud hangs there, whose returns may lie as close together as a wall's.
-  bool inCloud() const { return std::max(cloud, wake) > 0.5; }
+  /// Whether likely a cloud hangs there that is no weather, whose returns may lie as close together
+  /// as a wall's.
+  bool inCloud() const { return std::max(cloud * (1 - weather), wake) > 0.5; }
 };
 
 /// What may make phantoms of a lidar's returns at the instant of a scan, as the sensors themselves

@@ -34,6 +34,8 @@ TEST(PhantomCauses, ACloudIsInItsSectorAndNearTheSensor) {
   EXPECT_EQ(causes.at({101, 60}, Stamp{}).cloud, 0) << "to its right";
   EXPECT_EQ(causes.at({101, 60}, Stamp{}).likelier(), 0.1) << "the weather alone";
   EXPECT_EQ(causes.at({98, 75}, Stamp{}).cloud, 0) << "25 m ahead";
+  causes.weather = 1;
+  EXPECT_FALSE(causes.at({99, 60}, Stamp{}).inCloud()) << "fog is everywhere";
 }
 
 TEST(PhantomCauses, AWakeIsWhereAVehicleWasAndIsNoMore) {
