@@ -16,8 +16,10 @@ constexpr double kRemembered = 0.45;  // [s] five scans at 10 Hz
 constexpr double kBeside = 0.5;       // [m] to each side of the corridor, which may bend meanwhile
 constexpr double kSurface = 0.5;      // [m] along the corridor: returns of one surface
 constexpr double kMostStep = 1;       // [m] from scan to scan by which they lie farther apart
-constexpr double kStrip = 0.25;       // [m] across it, and half a surface along it
-constexpr float kRise = 0.1F;         // [m] within these: roads rise by less (assumed)
+constexpr std::size_t kMoreBefore = 3,
+                      kFewBefore = 6;  // times the returns of the newest scan, plus
+constexpr double kStrip = 0.25;        // [m] across it, and half a surface along it
+constexpr float kRise = 0.1F;          // [m] within these: roads rise by less (assumed)
 // [m] Height of a car's underside, plus 2 cm by which the ground's model may be too low (assumed).
 constexpr float kUnderside = 0.22F;
 // [m] above the road: lower returns are those of the road, and higher ones are hits (assumed).
@@ -79,6 +81,7 @@ struct WayReturns::Placed {
   const Return* of;
   std::size_t piece;
   bool newest;
+  std::size_t scan;  ///< of the remembered ones
 };
 
 void WayReturns::add(Stamp stamp, Corridor corridor, const std::vector<float>& unseen,
@@ -124,36 +127,60 @@ std::vector<WayReturns::Placed> WayReturns::placed(const Corridor& corridor, dou
   const Pose3 T_ego_world = corridor.T_world_ego.inverse();
   const std::vector<Return>& now = scans_.back().returns;
   const bool asks = std::any_of(now.begin(), now.end(), [](const Return& r) { return r.on_road; });
-  for (const Scan& scan : scans_) {
-    const bool newest = &scan == &scans_.back();
+  for (std::size_t k = 0; k < scans_.size(); ++k) {
+    const Scan& scan = scans_[k];
+    const bool newest = k + 1 == scans_.size();
     const double end = newest ? corridor.max : std::min(recent, corridor.max);
     for (const Return& r : scan.returns) {
       if (!newest && !r.sure && !asks) continue;  // they tell only what stands up
       const Vector3 p = T_ego_world * r.place;
       const ArcPlace at = arcPlace(corridor, p.x(), p.y());
       if (std::abs(at.d) > corridor.width / 2 || at.s < corridor.from || at.s > end) continue;
-      all.push_back({at, &r, 0, newest});
+      all.push_back({at, &r, 0, newest, k});
     }
   }
   return all;
 }
 
-// A beam passes along a level surface by as much as the vehicle drives between two scans.
-WayReturns::Found WayReturns::chained(const std::vector<Placed>& all, double least) const {
+// What stands shows about as many returns in each scan, and ever more as the vehicle comes nearer.
+// Of what has left, such as a vehicle ahead, the scans before have many more.
+void WayReturns::dropWhatHasLeft(std::vector<const Placed*>& chain) const {
+  std::vector<std::size_t> returns(scans_.size());
+  for (const Placed* r : chain) ++returns[r->scan];
+  const std::size_t most = kMoreBefore * returns.back() + kFewBefore;
+  const auto left = [&](const Placed* r) { return !r->newest && returns[r->scan] > most; };
+  chain.erase(std::remove_if(chain.begin(), chain.end(), left), chain.end());
+}
+
+WayReturns::Found WayReturns::ofChain(const std::vector<const Placed*>& chain, double least) {
   Found found;
   double sum = 0;
-  const Placed* last = nullptr;
-  for (const Placed& r : all) {
-    if (!r.of->sure) continue;
-    const double apart = last ? r.at.s - last->at.s : 0;
-    const bool one_scan = last && last->newest && r.newest;
-    if (apart > kSurface + (one_scan ? 0 : step_)) found = {}, sum = 0;
-    last = &r;
-    ++found.returns, sum += r.of->weight;
-    if (found.at == nullptr && r.newest) found.at = &r;
+  for (const Placed* r : chain) {
+    ++found.returns, sum += static_cast<double>(r->of->weight);
+    if (found.at == nullptr && r->newest) found.at = r;
     if (sum >= least && found.at != nullptr) return found;
   }
   return {};
+}
+
+// A beam passes along a level surface by as much as the vehicle drives between two scans.
+WayReturns::Found WayReturns::chained(const std::vector<Placed>& all, double least) const {
+  std::vector<const Placed*> chain;
+  const auto blocks = [&] {
+    dropWhatHasLeft(chain);
+    return ofChain(chain, least);
+  };
+  for (const Placed& r : all) {
+    if (!r.of->sure) continue;
+    const double apart = chain.empty() ? 0 : r.at.s - chain.back()->at.s;
+    const bool one_scan = !chain.empty() && chain.back()->newest && r.newest;
+    if (apart > kSurface + (one_scan ? 0 : step_)) {
+      if (const Found found = blocks(); found.at != nullptr) return found;
+      chain.clear();
+    }
+    chain.push_back(&r);
+  }
+  return blocks();
 }
 
 WayReturns::Found WayReturns::together(const std::vector<Placed>& all, double least) {

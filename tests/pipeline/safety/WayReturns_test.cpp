@@ -108,6 +108,12 @@ TEST(WayReturns, InClearAirWhatFewBeamsHitIsSeenInHalfASecond) {
   EXPECT_FALSE(ofScans({9, 9, 9, 9, 9}, true, 0, 31).free.blocked) << "farther than is asked for";
 }
 
+TEST(WayReturns, OfWhatHasLeftOneReturnIsNoObstacle) {
+  EXPECT_FALSE(ofScans({60, 60, 60, 60, 1}, true).free.blocked) << "a car was there, now a drop is";
+  EXPECT_TRUE(ofScans({9, 9, 9, 9, 1}, true).free.blocked) << "a thin one is hit by chance";
+  EXPECT_TRUE(ofScans({20, 20, 20, 20, 5}, true).free.blocked) << "it is partly hidden";
+}
+
 // The cloud behind a car ends the memory where it hangs, and nowhere else.
 TEST(WayReturns, AWakeMattersWhereItIs) {
   const auto blockedBeside = [](double wake_y) {
