@@ -16,10 +16,10 @@ constexpr double kRemembered = 0.45;  // [s] five scans at 10 Hz
 constexpr double kBeside = 0.5;       // [m] to each side of the corridor, which may bend meanwhile
 constexpr double kSurface = 0.5;      // [m] along the corridor: returns of one surface
 constexpr double kMostStep = 1;       // [m] from scan to scan by which they lie farther apart
-constexpr std::size_t kMoreBefore = 3,
-                      kFewBefore = 6;  // times the returns of the newest scan, plus
-constexpr double kStrip = 0.25;        // [m] across it, and half a surface along it
-constexpr float kRise = 0.1F;          // [m] within these: roads rise by less (assumed)
+// A scan with more returns than so many times those of the newest one, and these: it has left.
+constexpr std::size_t kMoreBefore = 3, kFewBefore = 6;
+constexpr double kStrip = 0.25;  // [m] across it, and half a surface along it
+constexpr float kRise = 0.1F;    // [m] within these: roads rise by less (assumed)
 // [m] Height of a car's underside, plus 2 cm by which the ground's model may be too low (assumed).
 constexpr float kUnderside = 0.22F;
 // [m] above the road: lower returns are those of the road, and higher ones are hits (assumed).
@@ -143,44 +143,38 @@ std::vector<WayReturns::Placed> WayReturns::placed(const Corridor& corridor, dou
 }
 
 // What stands shows about as many returns in each scan, and ever more as the vehicle comes nearer.
-// Of what has left, such as a vehicle ahead, the scans before have many more.
-void WayReturns::dropWhatHasLeft(std::vector<const Placed*>& chain) const {
+// Of what has left, such as a vehicle ahead, the scans before have many more at the place.
+std::vector<char> WayReturns::whatHasLeft(const std::vector<Placed>& all) const {
+  std::vector<char> left(all.size());
   std::vector<std::size_t> returns(scans_.size());
-  for (const Placed* r : chain) ++returns[r->scan];
-  const std::size_t most = kMoreBefore * returns.back() + kFewBefore;
-  const auto left = [&](const Placed* r) { return !r->newest && returns[r->scan] > most; };
-  chain.erase(std::remove_if(chain.begin(), chain.end(), left), chain.end());
-}
-
-WayReturns::Found WayReturns::ofChain(const std::vector<const Placed*>& chain, double least) {
-  Found found;
-  double sum = 0;
-  for (const Placed* r : chain) {
-    ++found.returns, sum += static_cast<double>(r->of->weight);
-    if (found.at == nullptr && r->newest) found.at = r;
-    if (sum >= least && found.at != nullptr) return found;
+  std::size_t first = 0, end = 0;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    while (end < all.size() && all[end].at.s - all[i].at.s <= kSurface) ++returns[all[end++].scan];
+    while (all[i].at.s - all[first].at.s > kSurface) --returns[all[first++].scan];
+    const std::size_t most = kMoreBefore * returns.back() + kFewBefore;
+    left[i] = *std::max_element(returns.begin(), returns.end()) > most;
   }
-  return {};
+  return left;
 }
 
 // A beam passes along a level surface by as much as the vehicle drives between two scans.
 WayReturns::Found WayReturns::chained(const std::vector<Placed>& all, double least) const {
-  std::vector<const Placed*> chain;
-  const auto blocks = [&] {
-    dropWhatHasLeft(chain);
-    return ofChain(chain, least);
-  };
-  for (const Placed& r : all) {
-    if (!r.of->sure) continue;
-    const double apart = chain.empty() ? 0 : r.at.s - chain.back()->at.s;
-    const bool one_scan = !chain.empty() && chain.back()->newest && r.newest;
-    if (apart > kSurface + (one_scan ? 0 : step_)) {
-      if (const Found found = blocks(); found.at != nullptr) return found;
-      chain.clear();
-    }
-    chain.push_back(&r);
+  const std::vector<char> left = whatHasLeft(all);
+  Found found;
+  double sum = 0;
+  const Placed* last = nullptr;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const Placed& r = all[i];
+    if (!r.of->sure || left[i]) continue;
+    const double apart = last ? r.at.s - last->at.s : 0;
+    const bool one_scan = last && last->newest && r.newest;
+    if (apart > kSurface + (one_scan ? 0 : step_)) found = {}, sum = 0;
+    last = &r;
+    ++found.returns, sum += static_cast<double>(r.of->weight);
+    if (found.at == nullptr && r.newest) found.at = &r;
+    if (sum >= least && found.at != nullptr) return found;
   }
-  return blocks();
+  return {};
 }
 
 WayReturns::Found WayReturns::together(const std::vector<Placed>& all, double least) {

@@ -32,12 +32,12 @@ class WayReturns {
   /// within half a meter along the corridor, or returns where nothing makes phantoms, from one to
   /// the next of which it is no farther than half a meter, and between scans no farther than that
   /// and the way that the vehicle drove (1 m at most), one of them in the newest scan: up to
-  /// `recent` [m] along the corridor those of half a second, beyond it those of the newest scan. A
-  /// scan that has many more returns there than the newest one does not count: they have left.
-  /// Others than hits count where they stand up: where heights up to half a meter, within half a
-  /// meter along the corridor and a quarter across it, differ by a tenth of a meter at least, which
-  /// those of a road do not, and the highest is above a car's underside. So do hits so far behind
-  /// the last road seen that the road itself may rise to them. Not blocked: none before
+  /// `recent` [m] along the corridor those of half a second, beyond it those of the newest scan.
+  /// Those about which an earlier scan had many more than the newest one have left and do not
+  /// count. Others than hits count where they stand up: where heights up to half a meter, within
+  /// half a meter along the corridor and a quarter across it, differ by a tenth of a meter at
+  /// least, which those of a road do not, and the highest is above a car's underside. So do hits so
+  /// far behind the last road seen that the road itself may rise to them. Not blocked: none before
   /// corridor.max.
   ReturnObstacle nearest(const Corridor& corridor, double recent, double least) const;
 
@@ -62,8 +62,7 @@ class WayReturns {
     std::size_t returns = 0;
   };
   Found chained(const std::vector<Placed>& all, double least) const;
-  void dropWhatHasLeft(std::vector<const Placed*>& chain) const;
-  static Found ofChain(const std::vector<const Placed*>& chain, double least);
+  std::vector<char> whatHasLeft(const std::vector<Placed>& all) const;
   static void keepWhatStandsUp(const Corridor& corridor, std::vector<Placed>& all);
   static Found together(const std::vector<Placed>& all, double least);
   std::vector<Placed> placed(const Corridor& corridor, double recent) const;
