@@ -1,12 +1,12 @@
 #include "gui-offscreen/drawing/Picture.h"
 
 #include <algorithm>
-#include <cctype>
 #include <filesystem>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
 #include "libperception/core/Error.h"
+#include "libperception/core/LowerCase.h"
 #include "libperception/measurement/frames/SensorFrame.h"
 #include "libperception/scene/files/OutputFile.h"
 #include "libperception/scene/files/RunMark.h"
@@ -15,10 +15,7 @@ namespace perception {
 namespace {
 
 std::string endingOf(const std::string& path) {
-  std::string ending = std::filesystem::path(path).extension().string();
-  std::transform(ending.begin(), ending.end(), ending.begin(),
-                 [](unsigned char c) { return static_cast<char>(c < 128 ? std::tolower(c) : c); });
-  return ending;
+  return lowerCase(std::filesystem::path(path).extension().string());
 }
 
 cv::Mat bgrOf(const Picture& picture) {

@@ -3,10 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 
 #include "gui-offscreen/drawing/Canvas.h"
+#include "libperception/core/LowerCase.h"
 
 namespace perception {
 namespace {
@@ -16,8 +16,7 @@ constexpr double kFaint = 0.35;  // opacity of boxes of probability < .5
 constexpr Color kTruth{255, 255, 255, 0.9};
 
 Color colorOf(const std::string& label) {
-  std::string name = label;
-  for (char& c : name) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  std::string name = lowerCase(label);
   if (name == "person") name = "pedestrian";
   return colorOfClass(name, static_cast<int>(name.size()));
 }

@@ -3,12 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cstdint>
 #include <cstring>
 #include <limits>
 
 #include "libperception/core/Error.h"
+#include "libperception/core/LowerCase.h"
 
 namespace perception {
 namespace {
@@ -20,12 +20,6 @@ double as(const char* bytes) {
   Number value;
   std::memcpy(&value, bytes, sizeof(value));
   return static_cast<double>(value);
-}
-
-std::string lowerCase(std::string text) {
-  std::transform(text.begin(), text.end(), text.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return text;
 }
 
 /// The ways in which programs write NaN and infinity.

@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <cstddef>
 #include <optional>
@@ -9,6 +8,7 @@
 #include <utility>
 
 #include "libperception/core/Error.h"
+#include "libperception/core/LowerCase.h"
 #include "libperception/importers/clouds/CloudTable.h"
 #include "libperception/importers/clouds/CsvText.h"
 
@@ -16,13 +16,12 @@ namespace perception {
 namespace {
 
 /// [m] or [s] of a unit's name.
-std::optional<double> sizeOfUnit(std::string unit) {
+std::optional<double> sizeOfUnit(const std::string& given) {
   static constexpr std::pair<const char*, double> kUnits[] = {
       {"", 1},      {"m", 1},     {"meter", 1}, {"meters", 1}, {"cm", 1e-2},
       {"mm", 1e-3}, {"s", 1},     {"sec", 1},   {"ms", 1e-3},  {"us", 1e-6},
       {"µs", 1e-6}, {"ns", 1e-9}, {"km", 1e3},  {"ft", 0.3048}};
-  std::transform(unit.begin(), unit.end(), unit.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  const std::string unit = lowerCase(given);
   for (const auto& [name, size] : kUnits)
     if (unit == name) return size;
   return {};

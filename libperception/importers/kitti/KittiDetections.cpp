@@ -3,10 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <utility>
 
+#include "libperception/core/LowerCase.h"
 #include "libperception/importers/Importer.h"
 
 namespace perception {
@@ -26,12 +26,6 @@ const KittiDetectionLayout& layoutOf(const std::string& name) {
   failUsage(fmt::format(
       "--detections: unknown detector '{}', expected one of {} (or one of these and '-anything')",
       name, known));
-}
-
-bool sameWord(const std::string& a, const std::string& b) {
-  return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](unsigned char x, unsigned char y) {
-    return std::tolower(x) == std::tolower(y);
-  });
 }
 
 ObjectDetection detectionOf(const WorldBox& box, const Pose3& T_velo_poses) {
@@ -78,7 +72,8 @@ void KittiDetections::add(const std::string& text) {
   }
   if (layout.name == std::string("boxes3d") && isJsonFile(wanted.file)) {
     for (auto& box : readNuscenesBoxes(wanted.file)) {
-      if (wanted.class_name != "all" && !sameWord(box.name, wanted.class_name)) continue;
+      if (wanted.class_name != "all" && lowerCase(box.name) != lowerCase(wanted.class_name))
+        continue;
       if (wanted.class_name != "all") box.name = wanted.class_name;  // Car for car
       detector->in_world[box.frame].push_back(std::move(box));
     }

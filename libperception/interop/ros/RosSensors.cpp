@@ -3,10 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <limits>
 
+#include "libperception/core/LowerCase.h"
 #include "libperception/measurement/frames/ScanTimes.h"
 
 namespace perception::ros {
@@ -46,12 +46,6 @@ double valueAt(const char* bytes, std::uint8_t type, bool big) {
     default:
       return numberAt<double>(bytes);
   }
-}
-
-std::string lowerCase(std::string text) {
-  std::transform(text.begin(), text.end(), text.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return text;
 }
 
 /// One field of every point of a message; drivers write the names in letters of either case.
@@ -121,6 +115,17 @@ double secondsOf(double value, const PointField& field, Stamp stamp, double firs
   if (std::abs(secondsSince1970(first)) < kDated)
     return value - (std::abs(first) > kLongestScan ? first : 0);
   return secondsSince1970(value) - (stamp.ns > 0 ? stamp.seconds() : secondsSince1970(first));
+}
+
+constexpr std::initializer_list<const char*> kRates = {
+    "doppler_velocity", "Doppler", "doppler", "range_rate", "radial_velocity",
+    "radial_speed",     "v_r",     "vr",      "velocity"};
+
+/// Its rate, if that is finite.
+perception::RadarReturn withRate(perception::RadarReturn r, double rate, double scale) {
+  r.has_rate = scale != 0 && std::isfinite(rate);
+  r.range_rate = r.has_rate ? scale * rate : 0;
+  return r;
 }
 
 void addPointFields(PointCloud2& m, std::initializer_list<const char*> names) {
@@ -213,21 +218,6 @@ PointCloud2 messageOf(const LidarCloud& cloud, const Header& header, std::string
       std::all_of(cloud.x.begin(), cloud.x.end(), [](float v) { return std::isfinite(v); });
   return m;
 }
-
-namespace {
-
-constexpr std::initializer_list<const char*> kRates = {
-    "doppler_velocity", "Doppler", "doppler", "range_rate", "radial_velocity",
-    "radial_speed",     "v_r",     "vr",      "velocity"};
-
-/// Its rate, if that is finite.
-perception::RadarReturn withRate(perception::RadarReturn r, double rate, double scale) {
-  r.has_rate = scale != 0 && std::isfinite(rate);
-  r.range_rate = r.has_rate ? scale * rate : 0;
-  return r;
-}
-
-}  // namespace
 
 RadarReturns returnsOf(const RadarScan& message, double rate_scale) {
   RadarReturns radar;

@@ -10,6 +10,7 @@
 #include <fstream>
 
 #include "libperception/core/Error.h"
+#include "libperception/core/LowerCase.h"
 
 namespace perception {
 namespace {
@@ -23,12 +24,6 @@ std::optional<boost::asio::ip::address> addressOf(const std::string& text) {
   return address;
 }
 
-std::string lowered(std::string text) {
-  std::transform(text.begin(), text.end(), text.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return text;
-}
-
 /// The name in "name", "name:port", "[address]:port"; empty if it is none of them.
 std::string nameIn(const std::string& host) {
   const bool bracket = !host.empty() && host[0] == '[';
@@ -40,12 +35,12 @@ std::string nameIn(const std::string& host) {
                                      std::all_of(rest.begin() + 1, rest.end(), [](unsigned char c) {
                                        return std::isdigit(c) != 0;
                                      }));
-  return port ? lowered(name) : "";
+  return port ? lowerCase(name) : "";
 }
 
 std::string machineName() {
   std::array<char, 256> name{};
-  return gethostname(name.data(), name.size() - 1) == 0 ? lowered(name.data()) : "";
+  return gethostname(name.data(), name.size() - 1) == 0 ? lowerCase(name.data()) : "";
 }
 
 bool isOurName(const AccessRules& rules, const std::string& name) {
@@ -115,7 +110,7 @@ std::string_view pathOf(std::string_view target) { return target.substr(0, targe
 std::optional<Refusal> refusalOf(const AccessRules& rules, const AccessRequest& request) {
   if (!isOurName(rules, nameIn(request.host)))
     return Refusal{403, "the header Host names another machine"};
-  if (request.origin && lowered(*request.origin) != "http://" + lowered(request.host) &&
+  if (request.origin && lowerCase(*request.origin) != "http://" + lowerCase(request.host) &&
       std::find(rules.origins.begin(), rules.origins.end(), *request.origin) == rules.origins.end())
     return Refusal{403, "pages of this origin may not connect (--serve-origin)"};
   if (!rules.token.empty() && !isSame(tokenIn(request), rules.token))
