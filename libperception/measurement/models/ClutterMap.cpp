@@ -1,6 +1,7 @@
 #include "libperception/measurement/models/ClutterMap.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "libperception/core/math/Angle.h"
@@ -11,13 +12,38 @@ namespace {
 constexpr double kSector = radians(45), kFirstRing = 10;  // [rad], [m]; assumed
 /// [s] for which counts are remembered: shorter than weather changes, longer than a junction takes.
 constexpr double kMemory = 10;
-/// Shape of the Gamma prior of the whole: its 90 % interval spans from a twentieth to three times
-/// the configured rate.
+/// Shape of the Gamma priors of the whole.
 constexpr double kPriorShape = 1;
+/// How wrong the configured rate may be: the prior is a mixture of Gamma distributions about these
+/// multiples of it; its mean is the configured rate. Assumed.
+struct Multiple {
+  double factor, weight;
+};
+constexpr std::array<Multiple, 3> kMultiples{{{0.1, 0.5}, {1, 0.45}, {10, 0.05}}};
 /// Shape of the Gamma prior of a cell about its share of the whole: false measurements cluster.
 constexpr double kCellShape = 8;
-/// Largest factor on the configured density, either way.
+/// Largest factor of a cell's density on the mean one of the view, either way. There is none on the
+/// configured rate: with one, a rate set too low by ten could not be left in heavy clutter.
 constexpr double kMostLogFactor = 3.5;  // ln 33
+
+/// [1/scan] posterior mean of the rate after `counts` in `exposure` scans.
+double posteriorMean(double prior_rate, double counts, double exposure) {
+  const double shape = kPriorShape + counts;
+  std::array<double, kMultiples.size()> log_evidence, mean;
+  for (std::size_t k = 0; k < kMultiples.size(); ++k) {
+    const double scans = kPriorShape / (prior_rate * kMultiples[k].factor);
+    mean[k] = shape / (scans + exposure);
+    log_evidence[k] = std::log(kMultiples[k].weight) + kPriorShape * std::log(scans) -
+                      shape * std::log(scans + exposure);
+  }
+  const double most = *std::max_element(log_evidence.begin(), log_evidence.end());
+  double all = 0, sum = 0;
+  for (std::size_t k = 0; k < kMultiples.size(); ++k) {
+    const double weight = std::exp(log_evidence[k] - most);
+    all += weight, sum += weight * mean[k];
+  }
+  return sum / all;
+}
 
 }  // namespace
 
@@ -64,7 +90,7 @@ void ClutterMap::add(const std::vector<double>& clutter, double dt) {
     total += counts_[c];
   }
   shape_ = kPriorShape + total;
-  scans_ = kPriorShape / prior_rate_ + exposure_;
+  scans_ = shape_ / posteriorMean(prior_rate_, total, exposure_);
   setFactors();
 }
 
@@ -72,8 +98,8 @@ void ClutterMap::setFactors() {
   for (std::size_t c = 0; c < counts_.size(); ++c) {
     const double share = cells_.share(c), mean = rate() * share;
     const double density = (kCellShape + counts_[c]) / (kCellShape / mean + exposure_);
-    log_factor_[c] =
-        std::clamp(std::log(density / (prior_rate_ * share)), -kMostLogFactor, kMostLogFactor);
+    log_factor_[c] = std::log(rate() / prior_rate_) +
+                     std::clamp(std::log(density / mean), -kMostLogFactor, kMostLogFactor);
   }
 }
 

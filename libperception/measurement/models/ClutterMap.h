@@ -27,7 +27,8 @@ class ViewCells {
 
 /// Expected number of false measurements per scan of one sensor, by cell of its view, learned from
 /// scans whose clutter has become known: Gamma-Poisson with forgetting, first for the whole view
-/// about the configured rate, then for each cell about its share of the whole (method.md 5.18).
+/// about the configured rate or a tenth or ten times of it, then for each cell about its share of
+/// the whole (method.md 5.18).
 class ClutterMap {
  public:
   /// `params`: clutter_per_scan and the view.
@@ -49,7 +50,7 @@ class ClutterMap {
 
   ViewCells cells_;
   double prior_rate_;
-  double shape_, scans_;        ///< of the Gamma distribution of the rate of the whole view
+  double shape_, scans_;        ///< of the rate of the whole view: counts, and scans of that mean
   double exposure_ = 0;         ///< scans that are remembered
   std::vector<double> counts_;  ///< remembered clutter by cell
   std::vector<double> log_factor_;

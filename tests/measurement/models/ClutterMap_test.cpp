@@ -60,6 +60,28 @@ TEST(ClutterMap, ARateMissetByTenEitherWayIsFoundInTwentySeconds) {
   }
 }
 
+TEST(ClutterMap, RatesMissetByTenEndWithinFivePercentOfEachOther) {
+  for (const double rate : {0.3, 3.0}) {
+    ClutterMap right(view(rate));
+    observe(rate, 20, right);
+    for (const double factor : {0.1, 10.0}) {
+      ClutterMap wrong(view(factor * rate));
+      observe(rate, 20, wrong);
+      EXPECT_NEAR(wrong.rate() / right.rate(), 1, 0.05) << rate << " " << factor;
+    }
+  }
+}
+
+TEST(ClutterMap, ADenseCellIsFoundHoweverLowTheConfiguredRate) {
+  ClutterMap low(view(0.02)), right(view(2));
+  for (int scan = 0; scan < 200; ++scan) {
+    std::vector<double> clutter(low.cells().size(), 0);
+    clutter[0] = 2;
+    low.add(clutter, 0.1), right.add(clutter, 0.1);
+  }
+  EXPECT_NEAR(low.logFactor(0) + std::log(0.02), right.logFactor(0) + std::log(2), std::log(1.2));
+}
+
 TEST(ClutterMap, TellsWhereInTheViewItIs) {
   ClutterMap map(view(1));
   const std::size_t loud = map.cells().at(15, radians(40)),
