@@ -66,6 +66,29 @@ TEST(Scene, GivesTheCovarianceOfPlaceAndVelocity) {
   EXPECT_EQ(o.sd_x, std::sqrt(o.covariance(0, 0)));
 }
 
+/// p_front of a car that has traveled `way` [m] along its heading and was seen by these sensors.
+double frontAfter(double way, std::initializer_list<Modality> seen_by) {
+  FilterModel model;
+  model.classes = test::pedestrianAndCar();
+  EgoState ego;
+  ego.stamp = test::kFirstStamp;
+  for (ObjectClass& c : model.classes.classes) c.motion = findMotionModel("wheeled");
+  Track track = *oneCar(0.1).tracks[0];
+  for (ClassFilter& f : track.bank) f.oriented = true, f.heading.traveled = way;
+  for (const Modality m : seen_by) track.last_hit[modalityIndex(m)] = test::kFirstStamp;
+  const Hypothesis one(TrackTable{std::make_shared<const Track>(track)});
+  return SceneFromPosterior(model, {}).make(one, ego, 0).objects.at(0).p_front;
+}
+
+TEST(Scene, AShortWayInImagesAloneDoesNotTellTheFront) {
+  EXPECT_GT(frontAfter(5, {Modality::kLidar}), 0.95);
+  EXPECT_GT(frontAfter(5, {Modality::kCamera, Modality::kLidar}), 0.95);
+  EXPECT_GT(frontAfter(5, {Modality::kRadar}), 0.95);
+  EXPECT_LT(frontAfter(5, {Modality::kCamera}), 0.8);
+  EXPECT_GT(frontAfter(5, {Modality::kCamera}), 0.5);
+  EXPECT_GT(frontAfter(20, {Modality::kCamera}), 0.95);
+}
+
 TEST(Scene, AForgottenIdIsNotGivenAgain) {
   FilterModel model;
   model.classes = test::pedestrianAndCar();

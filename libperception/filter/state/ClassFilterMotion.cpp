@@ -11,9 +11,6 @@
 namespace perception {
 namespace {
 
-/// Whether the speed of an oriented filter is not zero, by two standard deviations.
-bool movesSurely(const ClassFilter& f) { return f.x[2] * f.x[2] > 4 * f.P(2, 2); }
-
 /// x - reference, the heading wrapped.
 Vector4 modeDifference(const Vector4& x, const Vector4& reference, bool oriented) {
   Vector4 d = x - reference;
@@ -64,6 +61,13 @@ void interact(const ObjectClass& c, double dt, ClassFilter& f) {
 }
 
 }  // namespace
+
+bool movesSurely(const ClassFilter& f) { return f.x[2] * f.x[2] > 4 * f.P(2, 2); }
+
+void correctWay(const Vector2& predicted, ClassFilter& f) {
+  const Vector2 along(std::cos(f.x[3]), std::sin(f.x[3]));
+  f.heading.traveled += along.dot(f.x.head<2>() - predicted);
+}
 
 void startModes(const ObjectClass& c, ClassFilter& f) {
   f.modes.clear();

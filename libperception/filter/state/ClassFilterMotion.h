@@ -4,6 +4,13 @@
 
 namespace perception {
 
+/// Whether the speed of an oriented filter is not zero, by two standard deviations.
+bool movesSurely(const ClassFilter& f);
+/// After an update: how far it has moved an oriented filter along its heading from the `predicted`
+/// place [m] counts to the way traveled, as predictions do. A speed that detections do not confirm
+/// adds no way.
+void correctWay(const Vector2& predicted, ClassFilter& f);
+
 /// Moves a class filter by dt >= 0 [s] (method.md 3). Motion modes interact first.
 void predictClassFilter(const ObjectClass& object_class, double dt, ClassFilter& filter);
 /// First step of predictClassFilter(), for batches: mixes the modes and appends the Gaussians to be

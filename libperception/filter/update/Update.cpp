@@ -205,6 +205,8 @@ Track hitTrack(Track predicted, const TrackLikelihoods& row, const PairLikelihoo
     const bool is_lost = !(pair.nis[i] < lost);
     std::optional<BirthState> birth;
     if (is_lost || c.motion->has_heading) birth = scan.model->birth(m, j, scan.state);
+    const Vector2 expected = f.x.head<2>();
+    const bool drives = f.oriented && movesSurely(f);
     if (!is_lost) {
       if (place) {
         positionUpdate(m, place->placeNoise(j), f);
@@ -213,6 +215,7 @@ Track hitTrack(Track predicted, const TrackLikelihoods& row, const PairLikelihoo
         updateClassFilter(innovationOf(f, k, row.predictions[i], m, *scan.model), f);
         settleSpeeds(c, f);
       }
+      if (drives) correctWay(expected, f);
     } else if (birth) {
       f = restartFilter(c, *birth, best_kinematics, model);
     }

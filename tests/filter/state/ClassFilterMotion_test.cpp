@@ -167,6 +167,19 @@ TEST(Wheeled, KeepsTheWayThatItHasSurelyTraveled) {
   EXPECT_EQ(standing.heading.traveled, 0);
 }
 
+TEST(Wheeled, AWayThatDetectionsDoNotConfirmIsNone) {
+  ClassFilter f = orientedFilter(3, -2, 4, 2.8);
+  const Vector2 seen = f.x.head<2>();
+  for (int i = 0; i < 20; ++i) {
+    f.P.setZero();  // an uncertain heading moves by its moments, a little less than v dt
+    predictClassFilter(wheeled(), 0.1, f);
+    const Vector2 predicted = f.x.head<2>();
+    f.x.head<2>() = seen;
+    correctWay(predicted, f);
+  }
+  EXPECT_NEAR(f.heading.traveled, 0, 1e-9);
+}
+
 TEST(Wheeled, ReversalIsAnExactSymmetry) {
   ClassFilter forward = orientedFilter(3, -2, 4, 2.8);
   ClassFilter backward = forward;
