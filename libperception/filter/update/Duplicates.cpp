@@ -18,8 +18,9 @@ constexpr double kThere = 0.5;  // existence of what is likelier there than not
 const double kLogSureClass = std::log(0.95), kLogLikelyClass = std::log(0.5);
 
 /// Vehicles on one line keep more than this [s] between them from this speed [m/s] on. The shortest
-/// headways in traffic are three times as long.
-constexpr double kShortestHeadway = 0.1, kDriving = 8;
+/// headways in traffic are three times as long. Slower ones that surely drive are one vehicle where
+/// their footprints overlap along the line by more than this [m], for errors of their lengths.
+constexpr double kShortestHeadway = 0.1, kDriving = 8, kOverlap = 0.5;
 /// [m/s] by which their speeds differ at most; [m] length of the longest vehicle with a trailer.
 constexpr double kSameSpeed = 1.5, kLongestTrain = 20;
 
@@ -71,17 +72,18 @@ bool holds(const Footprint& f, const Vector2& p) {
 }
 
 /// Whether two footprints are the parts of one vehicle, or of one and its trailer: they drive on
-/// one line, equally fast, so close behind each other that no two drivers would.
+/// one line, equally fast, so close behind each other that no two drivers would, or overlap.
 bool isTrain(const Footprint& a, const Footprint& b) {
-  if (!a.vehicle || !b.vehicle || std::min(std::abs(a.speed), std::abs(b.speed)) < kDriving)
-    return false;
+  const double slower = std::min(std::abs(a.speed), std::abs(b.speed));
+  if (!a.vehicle || !b.vehicle || slower == 0) return false;
   const Vector2 apart = rotate2(-a.yaw, b.center - a.center);
   const Vector2 along(std::cos(a.yaw), std::sin(a.yaw)), other(std::cos(b.yaw), std::sin(b.yaw));
   const double length = 2 * (a.half.x() + b.half.x());
-  const double gap = std::abs(apart.x()) - length / 2;
+  const double gap = std::abs(apart.x()) - length / 2,
+               most = slower >= kDriving ? kShortestHeadway * std::abs(a.speed) : -kOverlap;
   return std::abs(apart.y()) < std::max(a.half.y(), b.half.y()) &&
-         (a.speed * along - b.speed * other).norm() < kSameSpeed &&
-         gap < kShortestHeadway * std::abs(a.speed) && length + gap < kLongestTrain;
+         (a.speed * along - b.speed * other).norm() < kSameSpeed && gap < most &&
+         length + gap < kLongestTrain;
 }
 
 /// The younger track's state with the older track's id and class, with all that has been counted in

@@ -198,6 +198,14 @@ TEST(Duplicates, VehiclesThatFollowEachOtherAreTwo) {
   EXPECT_EQ(tracksThatStay(driving(1, 10, 0, 3), driving(2, 15, 0, 3)), 2U) << "in a queue";
 }
 
+TEST(Duplicates, SlowVehiclesWhoseFootprintsOverlapAreOneAndStandingOnesAreTwo) {
+  EXPECT_EQ(tracksThatStay(driving(1, 10, 0, 3), driving(2, 13.8, 0.3, 3.3)), 1U);
+  EXPECT_EQ(tracksThatStay(driving(1, 10, 0, 3), driving(2, 14.1, 0.3, 3.3)), 2U) << "by 0.4 m";
+  EXPECT_EQ(tracksThatStay(driving(1, 10, 0, 3), driving(2, 13.8, 0.3, 5)), 2U) << "one is faster";
+  EXPECT_EQ(tracksThatStay(driving(1, 10, 0, 0.1), driving(2, 13.8, 0.3, 0.1)), 2U)
+      << "parked cars of which too long ones are seen";
+}
+
 TEST(Duplicates, VehiclesBesideEachOtherOrOfOtherSpeedsAreTwo) {
   EXPECT_EQ(tracksThatStay(driving(1, 10, 0, 25), driving(2, 12, 2.8, 25)), 2U);
   EXPECT_EQ(tracksThatStay(driving(1, 10, 0, 25), driving(2, 15.5, 0, 20)), 2U);
