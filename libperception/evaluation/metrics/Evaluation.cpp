@@ -196,6 +196,8 @@ class Evaluator {
       sample.type = truth.object->type;
       sample.class_id = truth.class_id;
       sample.view = truth.view;
+      if (std::isfinite(truth.object->vx) && std::isfinite(truth.object->vy))
+        sample.speed = std::hypot(truth.object->vx, truth.object->vy);
       sample.in_sensor_range = inSensorRange(truth);
       for (std::size_t p = 0; p < pairs.size(); ++p) {
         const int e = pairs[p][i];

@@ -53,6 +53,7 @@ struct TruthSample {
   std::string type;      ///< as in the truth
   ClassId class_id = 0;  ///< in Evaluation::class_names
   GroundView view;
+  std::optional<double> speed;                        ///< [m/s] of the truth; empty: it has none
   bool in_sensor_range = true;                        ///< denominator B of method.md 11
   std::array<std::optional<Match>, kPairings> match;  ///< by Pairing
 

@@ -106,8 +106,25 @@ struct Reliability {
                              ///< by count
 };
 Reliability reliability(const Evaluation& evaluation, Pairing pairing);
+/// How a truth object moves: below kStandingSpeed [m/s] it stands. Those whose truth has no speed
+/// are of no motion but `kAny`.
+enum class TruthMotion { kAny, kStanding, kMoving };
+inline constexpr double kStandingSpeed = 1;
+bool movesSo(const TruthSample& sample, TruthMotion motion);
+
 /// Calibration of p_front: matched outputs with a heading, of all classes or one.
-Reliability frontReliability(const Evaluation& evaluation, Pairing pairing, ClassId class_id = -1);
+Reliability frontReliability(const Evaluation& evaluation, Pairing pairing, ClassId class_id = -1,
+                             TruthMotion motion = TruthMotion::kAny);
+/// What is known of the fronts of objects, and how often that is wrong.
+struct FrontFigures {
+  std::size_t matched = 0, headings = 0, known = 0;  ///< matched; of these with a heading; of
+                                                     ///< these with p_front >= kSureFront
+  Figure with_heading, front_known;                  ///< shares of the matched
+  Figure known_reversed, other_reversed;             ///< shares more than 90 deg off
+  Figure calibration_error;                          ///< of p_front
+};
+FrontFigures frontFigures(const Evaluation& evaluation, Pairing pairing, ClassId class_id = -1,
+                          TruthMotion motion = TruthMotion::kAny);
 /// Calibration of the existence probability: outputs of a named class in the sector, and the share
 /// matched one-to-one to a truth object.
 Reliability existenceReliability(const Evaluation& evaluation);

@@ -61,14 +61,48 @@ Reliability reliability(const Evaluation& evaluation, Pairing pairing) {
   return builder.finish();
 }
 
-Reliability frontReliability(const Evaluation& evaluation, Pairing pairing, ClassId class_id) {
+bool movesSo(const TruthSample& sample, TruthMotion motion) {
+  if (motion == TruthMotion::kAny) return true;
+  return sample.speed && (*sample.speed < kStandingSpeed) == (motion == TruthMotion::kStanding);
+}
+
+Reliability frontReliability(const Evaluation& evaluation, Pairing pairing, ClassId class_id,
+                             TruthMotion motion) {
   ReliabilityBuilder builder;
   for (const TruthSample& sample : evaluation.samples) {
     const auto& match = sample.matched(pairing);
-    if (!match || !match->heading_error || (class_id >= 0 && sample.class_id != class_id)) continue;
+    if (!match || !match->heading_error || !movesSo(sample, motion) ||
+        (class_id >= 0 && sample.class_id != class_id))
+      continue;
     builder.add(match->front_probability, std::abs(*match->heading_error) <= kPi / 2);
   }
   return builder.finish();
+}
+
+FrontFigures frontFigures(const Evaluation& evaluation, Pairing pairing, ClassId class_id,
+                          TruthMotion motion) {
+  FrontFigures f;
+  std::size_t known_reversed = 0, other_reversed = 0;
+  for (const TruthSample& sample : evaluation.samples) {
+    const auto& match = sample.matched(pairing);
+    if (!match || !movesSo(sample, motion) || (class_id >= 0 && sample.class_id != class_id))
+      continue;
+    ++f.matched;
+    if (!match->heading_error) continue;
+    ++f.headings;
+    const bool known = match->front_probability >= kSureFront;
+    f.known += known;
+    if (std::abs(*match->heading_error) > kPi / 2) ++(known ? known_reversed : other_reversed);
+  }
+  const auto share = [](std::size_t part, std::size_t whole) {
+    return whole ? Figure(static_cast<double>(part) / static_cast<double>(whole)) : Figure();
+  };
+  f.with_heading = share(f.headings, f.matched);
+  f.front_known = share(f.known, f.matched);
+  f.known_reversed = share(known_reversed, f.known);
+  f.other_reversed = share(other_reversed, f.headings - f.known);
+  f.calibration_error = frontReliability(evaluation, pairing, class_id, motion).calibration_error;
+  return f;
 }
 
 Reliability existenceReliability(const Evaluation& evaluation) {

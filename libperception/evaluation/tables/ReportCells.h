@@ -22,6 +22,14 @@ const char* nameOf(Pairing pairing);
 /// "all" for -1.
 std::string className(const Evaluation& evaluation, ClassId c);
 
+inline constexpr TruthMotion kAllMotions[] = {TruthMotion::kAny, TruthMotion::kStanding,
+                                              TruthMotion::kMoving};
+const char* nameOf(TruthMotion motion);
+
+/// What is known of the fronts of objects, by run, class and motion; rows where something has a
+/// heading.
+ReportTable frontTable(const EvaluationReport& report);
+
 // Tables of one run.
 ReportTable confusionTable(const EvaluatedRun& run, Pairing pairing);
 ReportTable reliabilityTable(const EvaluatedRun& run);

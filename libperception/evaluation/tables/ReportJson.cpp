@@ -1,7 +1,7 @@
 #include <nlohmann/json.hpp>
 
 #include "libperception/evaluation/front_ends/FrontEndJson.h"
-#include "libperception/evaluation/tables/Report.h"
+#include "libperception/evaluation/tables/ReportCells.h"
 #include "libperception/scene/files/RunMark.h"
 
 namespace perception {
@@ -154,6 +154,25 @@ Json pairingJson(const Evaluation& evaluation, Pairing pairing) {
   return result;
 }
 
+Json frontsJson(const Evaluation& evaluation) {
+  Json rows = Json::array();
+  for (ClassId c = -1; c < static_cast<ClassId>(evaluation.class_names.size()); ++c) {
+    for (const TruthMotion motion : kAllMotions) {
+      const FrontFigures f = frontFigures(evaluation, Pairing::kOneToOne, c, motion);
+      if (f.headings == 0) continue;
+      rows.push_back({{"class", className(evaluation, c)},
+                      {"motion", nameOf(motion)},
+                      {"matched", f.matched},
+                      {"with_heading", json(f.with_heading)},
+                      {"front_known", json(f.front_known)},
+                      {"known_reversed", json(f.known_reversed)},
+                      {"other_reversed", json(f.other_reversed)},
+                      {"calibration_error", json(f.calibration_error)}});
+    }
+  }
+  return rows;
+}
+
 Json falseObjectsJson(const Evaluation& evaluation) {
   Json result = {{"all", json(falseObjectFigures(evaluation))}, {"classes", Json::object()}};
   for (std::size_t c = 0; c < evaluation.class_names.size(); ++c) {
@@ -247,6 +266,7 @@ std::string jsonReport(const EvaluationReport& report) {
                             {"classified", json(run.count_difference->classified)},
                             {"instants", run.count_difference->instants}};
     }
+    entry["fronts"] = frontsJson(e);
     entry["existence_reliability"] = json(existenceReliability(e));
     if (!run.benchmark.empty()) {
       Json& benchmark = entry["nuscenes_tracking"] = Json::array();

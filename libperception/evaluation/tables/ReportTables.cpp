@@ -269,8 +269,9 @@ ReportTable benchmarkTable(const EvaluationReport& report) {
 std::vector<ReportTable> reportTables(const EvaluationReport& report) {
   std::vector<ReportTable> tables = {paperTable(report)};
   if (report.runs.size() > 1) tables.push_back(sideBySideTable(report));
-  for (const auto& table : {trackedTable(report), errorTable(report), classificationTable(report),
-                            falseObjectTable(report), setTable(report)}) {
+  for (const auto& table :
+       {trackedTable(report), errorTable(report), frontTable(report), classificationTable(report),
+        falseObjectTable(report), setTable(report)}) {
     tables.push_back(table);
   }
   for (ReportTable& table : frontEndTables(report)) tables.push_back(std::move(table));

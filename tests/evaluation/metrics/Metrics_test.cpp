@@ -156,6 +156,38 @@ TEST(Metrics, ReversedHeadingsAreCountedApartWhereTheFrontIsKnown) {
               kTiny);
 }
 
+TEST(Metrics, FrontsOfWhatStandsAndOfWhatMovesAreCountedApart) {
+  std::vector<TruthObject> truth;
+  for (int i = 0; i < 5; ++i) {
+    truth.push_back(makeTruth(i, 1, 10, 0));
+    truth.back().yaw = 0;
+    if (i < 4) truth.back().vx = i < 2 ? 0.4 : 5, truth.back().vy = 0;
+  }
+  SceneObject guess = makeObject(1, 10, 0), known = guess, none = guess;
+  guess.yaw = 3, guess.p_front = 0.5;
+  known.yaw = 0, known.p_front = 0.9;
+  none.has_yaw = false;
+  const Evaluation e = compare({{guess}, {none}, {known}, {guess}, {known}}, truth);
+  const FrontFigures all = frontFigures(e, Pairing::kOneToOne),
+                     standing = frontFigures(e, Pairing::kOneToOne, -1, TruthMotion::kStanding),
+                     moving = frontFigures(e, Pairing::kOneToOne, kCar, TruthMotion::kMoving);
+  EXPECT_EQ(all.matched, 5u);
+  EXPECT_EQ(all.with_heading, 0.8);
+  EXPECT_EQ(all.front_known, 0.4);
+  EXPECT_EQ(all.known_reversed, 0);
+  EXPECT_EQ(all.other_reversed, 1);
+  EXPECT_EQ(standing.matched, 2u);
+  EXPECT_EQ(standing.with_heading, 0.5);
+  EXPECT_EQ(standing.front_known, 0);
+  EXPECT_FALSE(standing.known_reversed);
+  EXPECT_NEAR(*standing.calibration_error, 0.5, kTiny);
+  EXPECT_EQ(moving.matched, 2u) << "a truth without velocity is in neither";
+  EXPECT_EQ(moving.front_known, 0.5);
+  EXPECT_EQ(moving.known_reversed, 0);
+  EXPECT_NEAR(*moving.calibration_error, 0.5 * 0.1 + 0.5 * 0.5, kTiny);
+  EXPECT_EQ(frontFigures(e, Pairing::kOneToOne, kPedestrian).matched, 0u);
+}
+
 TEST(Metrics, SpeedIsJudgedOnlyWhereTheTruthHasOne) {
   TruthObject moving = makeTruth(0, 1, 10, 0);
   moving.vx = 3;

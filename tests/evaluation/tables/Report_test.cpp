@@ -130,6 +130,29 @@ TEST(Report, ABarInANameDoesNotBreakAMarkdownTable) {
   EXPECT_NE(markdownReport(report).find("| a\\|b |"), std::string::npos);
 }
 
+TEST(Report, FrontsAreATableByClassAndMotion) {
+  TrackedRun run = makeRun();
+  SceneObject car = makeObject(1, 10, 0);
+  car.p_front = 0.9;
+  run.scenes = {makeScene(0, {car}), makeScene(1, {car})};
+  std::vector<TruthObject> truth = {makeTruth(0, 5, 10, 0), makeTruth(1, 5, 10, 0)};
+  for (TruthObject& t : truth) t.vx = t.vy = t.yaw = 0;
+  EvaluationReport report;
+  report.runs.push_back({"run", "run", evaluate(run, makeGroundTruth(truth), {}), {}});
+  const auto tables = reportTables(report);
+  const auto fronts = std::find_if(tables.begin(), tables.end(), [](const ReportTable& t) {
+    return t.title == "Fronts of objects";
+  });
+  ASSERT_NE(fronts, tables.end());
+  ASSERT_EQ(fronts->rows.size(), 4u) << "all and car, any motion and standing";
+  EXPECT_EQ(fronts->rows[3], (std::vector<std::string>{"run", "car", "standing", "2", "1.000",
+                                                       "1.000", "0.000", "n/a", "0.100"}));
+  const auto json = nlohmann::json::parse(jsonReport(report))["runs"][0]["fronts"];
+  ASSERT_EQ(json.size(), 4u);
+  EXPECT_EQ(json[3]["motion"], "standing");
+  EXPECT_EQ(json[3]["front_known"], 1);
+}
+
 TEST(Report, TextColumnsAreAlignedForNamesInUtf8) {
   EvaluationReport report = sampleReport();
   report.runs.push_back(report.runs[0]);
