@@ -7,6 +7,9 @@
 #include "libperception/grid/beams/LayerBits.h"
 #include "libperception/simd/Dispatch.h"
 #include "libperception/simd/Vector8.h"
+#if PERCEPTION_HAS_WIDER
+#include <immintrin.h>
+#endif
 
 namespace perception {
 namespace {
@@ -28,16 +31,20 @@ struct Fan {
   std::int32_t step, side;     ///< column increments along and across
 };
 
-/// Whether a lane is not 0.
+/// Whether a lane is not 0 but -1.
 PERCEPTION_LANES bool anyLane(const Int4& v) {
   std::uint64_t pairs[2];
   std::memcpy(pairs, &v, sizeof pairs);
   return (pairs[0] | pairs[1]) != 0;
 }
 PERCEPTION_LANES bool anyLane(const Int8& v) {
+#if PERCEPTION_HAS_WIDER && !defined(__clang__)
+  return __builtin_ia32_movmskps256(reinterpret_cast<Float8>(v)) != 0;  // their signs
+#else
   Int4 halves[2];
   std::memcpy(halves, &v, sizeof halves);
   return anyLane(halves[0] | halves[1]);
+#endif
 }
 
 template <class Bits, class Mask>
@@ -46,6 +53,10 @@ PERCEPTION_LANES void gather(Mask* masks, const Bits& bits) {
   std::memcpy(&all, masks, sizeof all);
   all |= bits;
   std::memcpy(masks, &all, sizeof all);
+}
+template <class Half, class Mask>
+PERCEPTION_LANES void gather(Mask* masks, const TwoHalves<Half>& bits) {
+  gather(masks, bits.a), gather(masks + sizeof(Half) / sizeof(Mask), bits.b);
 }
 
 // For each group of cells along: begin of the cells and end of the first row that a beam of the fan

@@ -16,6 +16,14 @@ namespace perception {
 template <class Float, class Mask>
 struct LayerBits;
 
+/// Masks of the first and of the last cells, each in a register.
+template <class Half>
+struct TwoHalves {
+  Half a, b;
+  PERCEPTION_LANES TwoHalves operator+(const TwoHalves& o) const { return {a + o.a, b + o.b}; }
+  PERCEPTION_LANES TwoHalves operator-(const TwoHalves& o) const { return {a - o.a, b - o.b}; }
+};
+
 template <>
 struct LayerBits<Float8, std::uint32_t> {
   using Bits = std::uint32_t __attribute__((vector_size(32)));
@@ -30,14 +38,25 @@ struct LayerBits<Float8, std::uint32_t> {
 
 template <>
 struct LayerBits<Float8, std::uint64_t> {
-  using Bits = std::uint64_t __attribute__((vector_size(64)));
+  using Half = std::uint64_t __attribute__((vector_size(32)));
+  using Bits = TwoHalves<Half>;
   PERCEPTION_LANES static Bits at(const Float8& z) {
-    const Bits layer = __builtin_convertvector(truncated(z), Bits);
-    return Bits{1, 1, 1, 1, 1, 1, 1, 1} << layer;
+    const Bits layer = halves(truncated(z));
+    constexpr Half kOne = {1, 1, 1, 1};
+    return {kOne << layer.a, kOne << layer.b};
   }
   PERCEPTION_LANES static Bits where(const Int8& lanes, const Bits& bits) {
+    const Bits wanted = halves(lanes);
+    return {wanted.a & bits.a, wanted.b & bits.b};
+  }
+
+ private:
+  /// With their signs.
+  PERCEPTION_LANES static Bits halves(const Int8& v) {
     using Long8 = std::int64_t __attribute__((vector_size(64)));
-    return reinterpret_cast<Bits>(__builtin_convertvector(lanes, Long8)) & bits;
+    const Long8 wide = __builtin_convertvector(v, Long8);
+    return {reinterpret_cast<Half>(__builtin_shufflevector(wide, wide, 0, 1, 2, 3)),
+            reinterpret_cast<Half>(__builtin_shufflevector(wide, wide, 4, 5, 6, 7))};
   }
 };
 
@@ -64,13 +83,7 @@ struct LayerBits<Float4, std::uint32_t> {
 template <>
 struct LayerBits<Float4, std::uint64_t> {
   using Half = std::uint64_t __attribute__((vector_size(16)));
-  /// The first two cells, the last two.
-  struct Bits {
-    Half a, b;
-    PERCEPTION_LANES Bits operator+(const Bits& o) const { return {a + o.a, b + o.b}; }
-    PERCEPTION_LANES Bits operator-(const Bits& o) const { return {a - o.a, b - o.b}; }
-    PERCEPTION_LANES void operator|=(const Bits& o) { a |= o.a, b |= o.b; }
-  };
+  using Bits = TwoHalves<Half>;
   PERCEPTION_LANES static Bits at(const Float4& z) {
     using Low = LayerBits<Float4, std::uint32_t>;
     const Int4 layer = truncated(z), upper = layer > 31;
