@@ -1,5 +1,6 @@
 #include "libperception/grid/stores/ColumnRun.h"
 
+#include <algorithm>
 #include <limits>
 
 #include "libperception/simd/Dispatch.h"
@@ -87,23 +88,39 @@ class Sixteens {
 };
 #endif
 
+/// Columns that are looked at together, since most of a window have no evidence in a scan.
+constexpr std::size_t kAtOnce = 16;
+
+/// Whether one of kAtOnce columns has evidence; without branches, so that the compiler vectorizes
+/// it.
+template <class Mask>
+PERCEPTION_LANES bool anyEvidence(const Mask* hit, const Mask* crossed) {
+  Mask any = 0;
+  for (std::size_t k = 0; k < kAtOnce; ++k) any |= hit[k] | crossed[k];
+  return any != 0;
+}
+
 template <class Mask, class Rules>
 PERCEPTION_LANES void updateAll(const Rules& column, const ColumnRun<Mask>& run, ColumnAges& ages) {
   const Turn<Mask> turned(run.layers, run.turn);
   const int layers = run.layers;
   const bool judged = run.judged;
-  std::int16_t* values = run.values;
-  for (std::size_t i = 0; i < run.count; ++i, values += layers) {
-    const Mask hit = run.hit[i], crossed = run.crossed[i] & ~hit;
-    if ((hit | crossed) == 0) continue;
-    run.hit[i] = run.crossed[i] = 0;
-    const std::int16_t loss = ages.loss(run.slot + i);
-    ages.touch(run.slot + i);
-    if (hit == 0) {
-      column.clear(values, layers, loss, turned(crossed));
-    } else {
-      run.was_hit[i] = 1;
-      column.update(values, layers, loss, turned(hit), turned(crossed), judged);
+  for (std::size_t first = 0; first < run.count; first += kAtOnce) {
+    const std::size_t end = std::min(run.count, first + kAtOnce);
+    if (end == first + kAtOnce && !anyEvidence(run.hit + first, run.crossed + first)) continue;
+    std::int16_t* values = run.values + first * static_cast<std::size_t>(layers);
+    for (std::size_t i = first; i < end; ++i, values += layers) {
+      const Mask hit = run.hit[i], crossed = run.crossed[i] & ~hit;
+      if ((hit | crossed) == 0) continue;
+      run.hit[i] = run.crossed[i] = 0;
+      const std::int16_t loss = ages.loss(run.slot + i);
+      ages.touch(run.slot + i);
+      if (hit == 0) {
+        column.clear(values, layers, loss, turned(crossed));
+      } else {
+        run.was_hit[i] = 1;
+        column.update(values, layers, loss, turned(hit), turned(crossed), judged);
+      }
     }
   }
 }

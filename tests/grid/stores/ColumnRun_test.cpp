@@ -13,7 +13,7 @@ namespace {
 constexpr std::size_t kColumns = 50;
 constexpr double kTau = 3;  // [s]
 
-/// Columns of `layers` cells with evidence in some.
+/// Columns of `layers` cells with evidence in some, but none in many beside each other.
 struct Columns {
   int layers;
   std::vector<std::int16_t> values;
@@ -30,8 +30,9 @@ struct Columns {
       return (std::uint64_t{rng()} << 32 | rng()) & (std::uint64_t{rng()} << 32 | rng()) & all;
     };
     for (std::size_t i = 0; i < kColumns; ++i) {
-      hit.push_back(i % 3 == 0 ? some() : 0);
-      crossed.push_back(i % 5 == 0 ? 0 : some());
+      const bool seen = i < 16 || i >= 40;
+      hit.push_back(seen && i % 3 == 0 ? some() : 0);
+      crossed.push_back(!seen || i % 5 == 0 ? 0 : some());
     }
     ages.advance(0.4);
   }
