@@ -48,11 +48,18 @@ PERCEPTION_WIDEST void findAll(const float* __restrict x, const float* __restric
 SurroundingCubes::SurroundingCubes(float reach)
     : reach_(reach),
       side_(std::min(1024, 2 * static_cast<int>(std::ceil(reach / kEdge)))),
-      counts_(static_cast<std::size_t>(side_ * side_ * kLayers)) {
+      touched_(static_cast<std::size_t>(side_ * side_ * kLayers) / kTogether + 1, 0),
+      counts_(touched_.size() * kTogether) {
   for (std::size_t n = 0; n < logs_.size(); ++n) logs_[n] = std::log(static_cast<float>(n + 1));
 }
 
-void SurroundingCubes::clear() { std::fill(counts_.begin(), counts_.end(), 0U); }
+void SurroundingCubes::clear() {
+  for (std::size_t piece = 0; piece < touched_.size(); ++piece) {
+    if (touched_[piece] == 0) continue;
+    std::fill_n(&counts_[piece * kTogether], kTogether, 0U);
+    touched_[piece] = 0;
+  }
+}
 
 void SurroundingCubes::locate(const float* x, const float* y, const float* z, std::size_t count,
                               std::uint32_t* cubes, std::uint32_t* corners) const {
@@ -63,8 +70,12 @@ void SurroundingCubes::locate(const float* x, const float* y, const float* z, st
 // Neighbors in a scan share cubes; interleaving four parts of the scan avoids that dependency.
 void SurroundingCubes::add(const std::uint32_t* cubes, std::size_t count, std::uint32_t mask) {
   std::uint64_t* const counts = counts_.data();
+  std::uint8_t* const touched = touched_.data();
   const std::size_t quarter = count / 4;
-  const auto one = [&](std::size_t k) { ++counts[cubes[k] & mask]; };
+  const auto one = [&](std::size_t k) {
+    const std::uint32_t cube = cubes[k] & mask;
+    ++counts[cube], touched[cube / kTogether] = 1;
+  };
   for (std::size_t k = 0; k < quarter; ++k)
     one(k), one(k + quarter), one(k + 2 * quarter), one(k + 3 * quarter);
   for (std::size_t k = 4 * quarter; k < count; ++k) one(k);

@@ -38,7 +38,9 @@ class SurroundingCubes {
     trusted -= static_cast<std::uint32_t>(!doubted && trusted > 0);
     return logOfOneMore(trusted) - logOfOneMore(others);
   }
-  std::size_t memoryBytes() const { return counts_.capacity() * sizeof counts_[0]; }
+  std::size_t memoryBytes() const {
+    return counts_.capacity() * sizeof counts_[0] + touched_.capacity();
+  }
 
  private:
   static constexpr float kEdge = 0.5F;     // [m]
@@ -50,8 +52,11 @@ class SurroundingCubes {
     return count < logs_.size() ? logs_[count] : std::log(static_cast<float>(count) + 1);
   }
 
+  static constexpr std::size_t kTogether = 64;  // cubes
+
   float reach_;
   int side_;
+  std::vector<std::uint8_t> touched_;  // of each kTogether cubes: some have returns
   std::vector<std::uint64_t> counts_;  // trusted; in the upper 32 bits phantoms
   std::array<float, 1024> logs_;       // ln(1 + count) for small counts
 };

@@ -78,6 +78,30 @@ TEST(NeighborCounter, CountsAsALiteralLoopDoesAlsoForEchoesThatTheImageDoesNotSh
   EXPECT_GT(hidden, 3000U);
 }
 
+TEST(SurroundingCubes, HoldNothingOfTheScanBeforeTheyWereCleared) {
+  constexpr float kReach = 20;
+  constexpr std::size_t kCount = 300;
+  std::vector<float> x, y, z;
+  for (std::size_t i = 0; i < kCount; ++i) {
+    const auto turn = static_cast<float>(i) * 0.7F;
+    x.push_back(0.07F * static_cast<float>(i) * std::cos(turn));
+    y.push_back(0.07F * static_cast<float>(i) * std::sin(turn));
+    z.push_back(static_cast<float>(i % 12) - 5);
+  }
+  SurroundingCubes cubes(kReach);
+  std::vector<std::uint32_t> cube(kCount), corner(kCount);
+  cubes.locate(x.data(), y.data(), z.data(), kCount, cube.data(), corner.data());
+  for (int scan = 0; scan < 2; ++scan) {
+    cubes.add(cube.data(), kCount, ~0U);
+    for (std::size_t i = 0; i < kCount; i += 3) cubes.doubt(cube[i]);
+    bool any = false;
+    for (const std::uint32_t at : corner) any = any || cubes.surroundings(at, false) != 0;
+    EXPECT_TRUE(any);
+    cubes.clear();
+    for (const std::uint32_t at : corner) EXPECT_EQ(cubes.surroundings(at, false), 0);
+  }
+}
+
 TEST(SuspectReturns, ThoseOfASurfaceAreCleared) {
   SuspectReturns suspects;
   LidarCloud cloud;
