@@ -1,10 +1,14 @@
 #include "libperception/weather/Multipath.h"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <unordered_map>
 
+#include "libperception/simd/Compress.h"
 #include "libperception/simd/Dispatch.h"
+#include "libperception/simd/RawVector.h"
 #include "libperception/weather/HeightAboveGround.h"
 
 namespace perception {
@@ -62,33 +66,45 @@ class Cubes {
 };
 
 /// About places [m, ego frame], in floats; no cube of interest lies outside.
-class WatchedBox {
- public:
-  WatchedBox(const Pose3& T_ego_sensor, double beside)
-      : R_(T_ego_sensor.linear().cast<float>()),
-        t_(T_ego_sensor.translation().cast<float>()),
-        beside_(static_cast<float>(beside)) {}
+struct WatchedBox {
+  float turn[3][3], offset[3];  ///< from the sensor frame
+  float low[3], high[3];
 
+  explicit WatchedBox(const Pose3& T_ego_sensor) {
+    for (int k = 0; k < 3; ++k) {
+      for (int j = 0; j < 3; ++j) turn[k][j] = static_cast<float>(T_ego_sensor.linear()(k, j));
+      offset[k] = static_cast<float>(T_ego_sensor.translation()[k]);
+      low[k] = std::numeric_limits<float>::infinity(), high[k] = -low[k];
+    }
+  }
   void add(const Vector3& place) {
-    const Eigen::Vector3f p = place.cast<float>();
-    low_ = low_.cwiseMin(p), high_ = high_.cwiseMax(p);
+    for (int k = 0; k < 3; ++k) {
+      const auto v = static_cast<float>(place[k]);
+      low[k] = std::min(low[k], v), high[k] = std::max(high[k], v);
+    }
+  }
+  void widen(float beside) {
+    for (int k = 0; k < 3; ++k) low[k] -= beside, high[k] += beside;
   }
   /// Whether a point of the sensor frame [m] may be in it.
-  bool mayHold(float x, float y, float z) const {
+  std::int32_t mayHold(float x, float y, float z) const {
+    std::int32_t within = 1;
     for (int k = 0; k < 3; ++k) {
-      const float v = R_(k, 0) * x + R_(k, 1) * y + R_(k, 2) * z + t_[k];
-      if (v < low_[k] - beside_ || v > high_[k] + beside_) return false;
+      const float v = turn[k][0] * x + turn[k][1] * y + turn[k][2] * z + offset[k];
+      within &= static_cast<std::int32_t>(v >= low[k]) & static_cast<std::int32_t>(v <= high[k]);
     }
-    return true;
+    return within;
   }
-
- private:
-  Eigen::Matrix3f R_;
-  Eigen::Vector3f t_;
-  float beside_;
-  Eigen::Vector3f low_ = Eigen::Vector3f::Constant(std::numeric_limits<float>::infinity()),
-                  high_ = -low_;
 };
+
+/// Marks the points above `least` [m] that may be in the box; as findHeights().
+PERCEPTION_WIDEST void markWatched(const WatchedBox box, float least, const float* __restrict x,
+                                   const float* __restrict y, const float* __restrict z,
+                                   const float* __restrict heights, std::size_t count,
+                                   std::int32_t* __restrict marks) {
+  for (std::size_t i = 0; i < count; ++i)
+    marks[i] = static_cast<std::int32_t>(heights[i] > least) & box.mayHold(x[i], y[i], z[i]);
+}
 
 /// Heights of all returns [m]; without branches, so that the compiler vectorizes it.
 PERCEPTION_WIDEST void findHeights(const HeightAboveGround height, const float* __restrict x,
@@ -112,7 +128,7 @@ std::vector<std::uint32_t> findMirrorImages(const SensorFrame& frame,
                                                 static_cast<double>(cloud->y[i]),
                                                 static_cast<double>(cloud->z[i])));
   };
-  std::vector<float> heights(cloud->size());
+  RawVector<float> heights(cloud->size());
   struct Mirrored {
     std::uint32_t index;
     Vector3 place;  // [m] position of the mirror image, ego frame
@@ -132,12 +148,22 @@ std::vector<std::uint32_t> findMirrorImages(const SensorFrame& frame,
 
   Cubes cubes(params.tolerance);
   constexpr double kRounding = 0.01;  // [m] of floats
-  WatchedBox watched(frame.T_ego_sensor, 2 * params.tolerance + kRounding);
+  WatchedBox watched(frame.T_ego_sensor);
   for (const Mirrored& image : below) cubes.watchAround(image.place), watched.add(image.place);
-  for (std::size_t i = 0; i < cloud->size(); ++i) {
-    if (!(heights[i] > depth) || !watched.mayHold(cloud->x[i], cloud->y[i], cloud->z[i])) continue;
-    if (!cloud->trust.empty() && cloud->trust[i] < 0.5F) continue;
-    cubes.add(placeOf(i));
+  watched.widen(static_cast<float>(2 * params.tolerance + kRounding));
+  constexpr std::size_t kBlock = 512;  // points that fit in the L1 cache
+  std::array<std::int32_t, kBlock> marks;
+  std::array<std::uint32_t, kBlock + kPackSlack> places;
+  for (std::size_t first = 0; first < cloud->size(); first += kBlock) {
+    const std::size_t count = std::min(kBlock, cloud->size() - first);
+    markWatched(watched, depth, &cloud->x[first], &cloud->y[first], &cloud->z[first],
+                &heights[first], count, marks.data());
+    const std::size_t marked =
+        packPlaces(marks.data(), count, static_cast<std::uint32_t>(first), places.data());
+    for (std::size_t k = 0; k < marked; ++k) {
+      const std::uint32_t i = places[k];
+      if (cloud->trust.empty() || !(cloud->trust[i] < 0.5F)) cubes.add(placeOf(i));
+    }
   }
   for (const Mirrored& image : below)
     if (cubes.around(image.place) >= params.support) found.push_back(image.index);
