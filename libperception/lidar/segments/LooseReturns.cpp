@@ -67,9 +67,10 @@ PERCEPTION_LANES CellsAbout cellsWithin(const DirectionCells& cells,
     held += farthest >= any, told += farthest >= least, passed += farthest > shell.behind;
   }
   const IntsOf<Float> counts = held + kNext * (told + kNext * passed);
-  int sum = 0;
-  for (int lane = 0; lane <= 2 * around; ++lane) sum -= counts[lane];
-  const int all = sum % kNext, tell = sum / kNext % kNext, gone = sum / kNext / kNext;
+  unsigned sum = 0;  // its remainders cost less than those of a signed number
+  for (int lane = 0; lane <= 2 * around; ++lane) sum -= static_cast<unsigned>(counts[lane]);
+  const auto all = static_cast<int>(sum % kNext), tell = static_cast<int>(sum / kNext % kNext),
+             gone = static_cast<int>(sum / kNext / kNext);
   return {tell - gone, gone, all - tell};
 }
 

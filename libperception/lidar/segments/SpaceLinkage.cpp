@@ -158,7 +158,7 @@ class CubeLinkage {
     }
   }
 
-  /// Numbers the cubes with returns, block by block.
+  /// Numbers the cubes with returns, block by block, and counts these.
   void numberCubes() {
     const std::uint32_t words = grid_.words();
     const std::unique_ptr<std::uint32_t[]> number(new std::uint32_t[64 * used_.size()]);
@@ -171,11 +171,10 @@ class CubeLinkage {
     }
     first_cube_.push_back(count);
     first_return_.assign(count + 1, 0);
-    for (std::uint32_t& cube : cube_of_) cube = number[cube];
+    for (std::uint32_t& cube : cube_of_) cube = number[cube], ++first_return_[cube + 1];
   }
 
   void sortReturns() {
-    for (const std::uint32_t cube : cube_of_) ++first_return_[cube + 1];
     std::partial_sum(first_return_.begin(), first_return_.end(), first_return_.begin());
     std::vector<std::uint32_t> next(first_return_.begin(), first_return_.end() - 1);
     sorted_.resize(returns_.size());
