@@ -5,6 +5,8 @@
 #include <limits>
 #include <utility>
 
+#include "libperception/grid/way/NearCorridor.h"
+
 namespace perception {
 namespace {
 
@@ -51,12 +53,8 @@ double Corridor::roadAt(double s) const {
 }
 
 ArcPlace arcPlace(const Corridor& corridor, double x, double y) {
-  if (corridor.backward) x = -x, y = -y;
-  if (std::abs(corridor.curvature) < kStraight) return {x, y};
-  const double side = corridor.curvature > 0 ? 1 : -1;  // a right turn is a mirrored left turn
-  const double radius = 1 / std::abs(corridor.curvature);
-  const double to_center = radius - side * y;
-  return {radius * std::atan2(x, to_center), side * (radius - std::hypot(x, to_center))};
+  constexpr double kAnywhere = std::numeric_limits<double>::infinity();
+  return arcPlaceWithin(corridor, x, y, kAnywhere).value_or(ArcPlace{});
 }
 
 Vector2 onArc(const Corridor& corridor, const ArcPlace& place) {
@@ -101,10 +99,9 @@ FreeDistance freeDistance(const Corridor& corridor, const std::vector<GridCell>&
   for (std::size_t i = 0; i < occupied.size(); ++i) {
     const Vector3 p = T_ego_world * occupied[i].center;
     const double half = occupied[i].size.x() / 2;
-    const ArcPlace place = arcPlace(corridor, p.x(), p.y());
-    if (std::abs(place.d) > corridor.width / 2 + half) continue;
-    if (place.s + half < corridor.from || place.s - half > corridor.max) continue;
-    inside.push_back({place.s - half, i});
+    const auto place = arcPlaceWithin(corridor, p.x(), p.y(), corridor.width / 2 + half);
+    if (!place || place->s + half < corridor.from || place->s - half > corridor.max) continue;
+    inside.push_back({place->s - half, i});
   }
   if (const CellInside* first = firstTogether(inside, static_cast<std::size_t>(corridor.cells))) {
     result.distance = std::max(first->s, corridor.from);

@@ -12,6 +12,25 @@
 namespace perception {
 namespace {
 
+constexpr double kBentLeast = 1e-6;  // [1/m] below it the arc is a line
+
+/// A place as seen from the center of the arc, if it bends; a right turn is a mirrored left turn.
+struct FromCenter {
+  bool straight;
+  double x, y;                     ///< [m] in the direction of travel
+  double side, radius, to_center;  ///< [-] of the turn; [m], [m] of the place
+
+  FromCenter(const Corridor& corridor, double ego_x, double ego_y)
+      : straight(std::abs(corridor.curvature) < kBentLeast),
+        x(corridor.backward ? -ego_x : ego_x),
+        y(corridor.backward ? -ego_y : ego_y),
+        side(corridor.curvature > 0 ? 1 : -1),
+        radius(1 / std::abs(corridor.curvature)),
+        to_center(radius - side * y) {}
+  double s() const { return straight ? x : radius * std::atan2(x, to_center); }
+  double d() const { return straight ? y : side * (radius - std::hypot(x, to_center)); }
+};
+
 /// Bounds on points given from a base, along and across the direction of travel.
 struct CorridorBounds {
   float along[4], across[4];  ///< rows of the transform from the base: factors and offset [m]
@@ -71,6 +90,17 @@ std::vector<std::uint32_t> nearCorridor(const Corridor& corridor, double end,
     near.insert(near.end(), places.begin(), places.begin() + static_cast<std::ptrdiff_t>(found));
   }
   return near;
+}
+
+std::optional<ArcPlace> arcPlaceWithin(const Corridor& corridor, double x, double y, double side) {
+  const FromCenter place(corridor, x, y);
+  const double d = place.d();
+  if (std::abs(d) > side) return std::nullopt;
+  return ArcPlace{place.s(), d};
+}
+
+double alongArc(const Corridor& corridor, double x, double y) {
+  return FromCenter(corridor, x, y).s();
 }
 
 }  // namespace perception

@@ -1,5 +1,6 @@
 #pragma once
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "libperception/grid/beams/GridPoints.h"
@@ -14,5 +15,10 @@ namespace perception {
 /// left out.
 std::vector<std::uint32_t> nearCorridor(const Corridor& corridor, double end,
                                         const GridPoints& points);
+
+/// arcPlace() of a place [m, ego frame]; none: it lies farther than `side` [m] beside the arc.
+std::optional<ArcPlace> arcPlaceWithin(const Corridor& corridor, double x, double y, double side);
+/// The s of arcPlace() alone [m].
+double alongArc(const Corridor& corridor, double x, double y);
 
 }  // namespace perception

@@ -28,11 +28,10 @@ bool inCloud(const Corridor& corridor, const ObstacleScan& obstacles, double obs
   std::size_t doubted = 0, trusted = 0, walls = 0;
   for (const std::uint32_t i : nearCorridor(corridor, obstacle + kInto, scan.hits)) {
     const Vector3 p = T_ego_world * scan.hits[i];
-    const ArcPlace place = arcPlace(corridor, p.x(), p.y());
-    if (std::abs(place.d) > corridor.width / 2) continue;
-    if (place.s < corridor.from || place.s > obstacle + kInto) continue;
+    const auto place = arcPlaceWithin(corridor, p.x(), p.y(), corridor.width / 2);
+    if (!place || place->s < corridor.from || place->s > obstacle + kInto) continue;
     ++(scan.weights[i] < kDoubted ? doubted : trusted);
-    walls += !obstacles.solid.empty() && obstacles.solid[i] && place.s >= obstacle;
+    walls += !obstacles.solid.empty() && obstacles.solid[i] && place->s >= obstacle;
   }
   return doubted > trusted && static_cast<double>(walls) < solid;
 }
@@ -50,9 +49,10 @@ void countReturns(const ObstacleScan& scan, PathAhead& path) {
   const double end = path.free.distance + kInto;
   for (const std::uint32_t k : nearCorridor(path.corridor, end, scan.scan.hits)) {
     const Vector3 p = T_ego_world * scan.scan.hits[k];
-    const ArcPlace place = arcPlace(path.corridor, p.x(), p.y());
-    const double into = place.s - path.free.distance;
-    if (std::abs(place.d) > path.corridor.width / 2 || into < -kBefore || into > kInto) continue;
+    const auto place = arcPlaceWithin(path.corridor, p.x(), p.y(), path.corridor.width / 2);
+    if (!place) continue;
+    const double into = place->s - path.free.distance;
+    if (into < -kBefore || into > kInto) continue;
     const bool counts = scan.scan.weights.empty() || scan.scan.weights[k] >= kDoubted;
     path.returns += counts, path.overruled += counts && scan.doubted[k];
   }

@@ -107,7 +107,7 @@ void WayReturns::add(Stamp stamp, Corridor corridor, const std::vector<float>& u
       const float weight = !hit || weights.empty() ? 1 : weights[i];
       if (weight <= 0) continue;
       const Vector3 place = (*points)[i], p = T_ego_world * place;
-      const double s = arcPlace(corridor, p.x(), p.y()).s, height = p.z() - corridor.roadAt(s);
+      const double s = alongArc(corridor, p.x(), p.y()), height = p.z() - corridor.roadAt(s);
       if (!hit && (height < kRough || height > kLow)) continue;
       const bool sure = causes.at(place.head<2>(), stamp).likelier() <= 0;
       const auto meter = static_cast<std::size_t>(std::max(s, 0.0));
@@ -134,9 +134,8 @@ std::vector<WayReturns::Placed> WayReturns::placed(const Corridor& corridor, dou
     for (const Return& r : scan.returns) {
       if (!newest && !r.sure && !asks) continue;  // they tell only what stands up
       const Vector3 p = T_ego_world * r.place;
-      const ArcPlace at = arcPlace(corridor, p.x(), p.y());
-      if (std::abs(at.d) > corridor.width / 2 || at.s < corridor.from || at.s > end) continue;
-      all.push_back({at, &r, 0, newest, k});
+      const auto at = arcPlaceWithin(corridor, p.x(), p.y(), corridor.width / 2);
+      if (at && !(at->s < corridor.from || at->s > end)) all.push_back({*at, &r, 0, newest, k});
     }
   }
   return all;

@@ -67,6 +67,29 @@ TEST(NearCorridor, LeavesOutNearlyAllThatLiesBesideIt) {
   }
 }
 
+TEST(ArcPlaceWithin, IsThePlaceOfThoseThatLieNoFartherBesideTheArc) {
+  constexpr double kSide = 1.5;  // [m]
+  for (const bool backward : {false, true}) {
+    for (const double curvature : {0.0, 0.003, -0.08}) {
+      const Corridor corridor = bentCorridor(curvature, backward);
+      int within = 0;
+      for (double x = -20; x < 20; x += 0.613) {
+        for (double y = -20; y < 20; y += 0.471) {
+          const ArcPlace place = arcPlace(corridor, x, y);
+          const auto found = arcPlaceWithin(corridor, x, y, kSide);
+          ASSERT_EQ(found.has_value(), std::abs(place.d) <= kSide) << x << " " << y;
+          EXPECT_EQ(alongArc(corridor, x, y), place.s);
+          if (!found) continue;
+          EXPECT_EQ(found->s, place.s);
+          EXPECT_EQ(found->d, place.d);
+          ++within;
+        }
+      }
+      EXPECT_GT(within, 100);
+    }
+  }
+}
+
 TEST(NearCorridor, LeavesOutPointsThatAreNotFinite) {
   const Corridor corridor = bentCorridor(0, false);
   GridPoints points;
