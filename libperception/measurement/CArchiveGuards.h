@@ -2,6 +2,7 @@
 #include <mrpt/serialization/CArchive.h>
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <stdexcept>
@@ -43,14 +44,17 @@ inline bool readFlag(mrpt::serialization::CArchive& in) {
 /// An array of `count` numbers, little-endian; the count is not part of it.
 template <class Number>
 void readBlock(mrpt::serialization::CArchive& in, std::vector<Number>& values, std::size_t count) {
+  std::array<Number, 512> piece;  // in the L1 cache, so that memory is written once
   values.clear();
   while (values.size() < count) {
-    const std::size_t begin = values.size();
-    const std::size_t part = std::min(count - begin, kBlockBytes / sizeof(Number));
-    values.resize(begin + part);
-    if (in.ReadBufferFixEndianness(values.data() + begin, part) != part * sizeof(Number)) {
+    const std::size_t rest = count - values.size();
+    if (values.size() == values.capacity())
+      values.reserve(values.size() + std::min(rest, kBlockBytes / sizeof(Number)));
+    const std::size_t part = std::min({rest, values.capacity() - values.size(), piece.size()});
+    if (in.ReadBufferFixEndianness(piece.data(), part) != part * sizeof(Number)) {
       throw std::runtime_error("the data ends inside an array");
     }
+    values.insert(values.end(), piece.data(), piece.data() + part);
   }
 }
 
