@@ -190,7 +190,7 @@ void SnapshotSensors::takeLidar(SensorFrame& frame) {
     lidar.weather->apply(frame);
     lidar.air.add(lidar.weather->census(frame), frame.stamp);
     frame.causes.weather = lidar.air.state().notClear();
-    frame.causes.clouds = lidar.air.clouds(frame.T_world_sensor());
+    frame.causes.clouds = lidar.air.clouds(frame.T_world_sensor(), frame.causes.weather);
   }
   const LidarSettings settings = settingsOf(frame);
   EgoPoints points = usablePoints(frame, settings.points);

@@ -75,7 +75,8 @@ double WeatherWatch::notClear(const std::string& sensor) const {
 std::shared_ptr<const AirClouds> WeatherWatch::clouds(const std::string& sensor,
                                                       const Pose3& T_world_sensor) const {
   const auto found = lidars_.find(sensor);
-  return found == lidars_.end() ? nullptr : found->second.estimator.clouds(T_world_sensor);
+  if (found == lidars_.end()) return nullptr;
+  return found->second.estimator.clouds(T_world_sensor, found->second.not_clear);
 }
 
 std::vector<WeatherRow> WeatherWatch::take() { return std::exchange(rows_, {}); }

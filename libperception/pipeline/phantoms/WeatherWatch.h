@@ -35,7 +35,8 @@ class WeatherWatch {
   double clear() const { return clear_; }  ///< probability of clear air at the last scan
   /// P(the air is not clear) at this lidar's last scan; 0 for one whose returns are not weighed.
   double notClear(const std::string& sensor) const;
-  /// The clouds that this lidar sees near by, from its pose at the last scan; null: hardly any.
+  /// The clouds that this lidar sees near by, from its pose at the last scan; null: none that is
+  /// likelier than its weather.
   std::shared_ptr<const AirClouds> clouds(const std::string& sensor,
                                           const Pose3& T_world_sensor) const;
   double fog() const { return fog_; }  ///< probability of fog at the last scan

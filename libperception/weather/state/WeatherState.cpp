@@ -199,12 +199,13 @@ WeatherState WeatherEstimator::state() const {
 }
 
 // A cloud fades out: the sectors beside it count, too.
-std::shared_ptr<const AirClouds> WeatherEstimator::clouds(const Pose3& T_world_sensor) const {
+std::shared_ptr<const AirClouds> WeatherEstimator::clouds(const Pose3& T_world_sensor,
+                                                          double weather) const {
   const double usual = kLeastSeen * *std::max_element(seen_.begin(), seen_.end());
   std::array<double, kSectors> own{};
   for (std::size_t s = 0; s < kSectors; ++s)
     own[s] = std::max(cloudOf(now_[s], usual), cloudOf(brief_.sectors[s], usual));
-  if (*std::max_element(own.begin(), own.end()) < kHardlyCloud) return nullptr;
+  if (*std::max_element(own.begin(), own.end()) <= std::max(kHardlyCloud, weather)) return nullptr;
   auto clouds = std::make_shared<AirClouds>();
   clouds->T_sensor_world = T_world_sensor.inverse();
   for (std::size_t s = 0; s < kSectors; ++s)

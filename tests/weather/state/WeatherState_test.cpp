@@ -58,14 +58,15 @@ TEST(WeatherState, SprayBesideTheVehicleIsACloudInItsSectorsAtOnce) {
   census.sectors[5].lone = {0, 0.03 * 4000, 0.05 * 4000, 0.02 * 4000, 0};
   WeatherEstimator estimator;
   estimator.add(street(), Stamp{1'000'000'000});
-  EXPECT_EQ(estimator.clouds(Pose3::Identity()), nullptr);
+  EXPECT_EQ(estimator.clouds(Pose3::Identity(), 0), nullptr);
   estimator.add(census, Stamp{1'100'000'000});
-  const auto clouds = estimator.clouds(Pose3::Identity());
+  const auto clouds = estimator.clouds(Pose3::Identity(), 0);
   ASSERT_NE(clouds, nullptr);
   EXPECT_GT(clouds->probability[5], 0.9);
   EXPECT_GT(clouds->probability[6], 0.9) << "a cloud fades out";
   EXPECT_EQ(clouds->probability[8], 0);
   EXPECT_GT(estimator.state().of(WeatherType::kClear), 0.9) << "a cloud is no weather";
+  EXPECT_EQ(estimator.clouds(Pose3::Identity(), 0.99), nullptr) << "the weather is the likelier";
 }
 
 TEST(WeatherState, PlantsAsInClearRecordingsAreNoCloud) {
@@ -73,7 +74,7 @@ TEST(WeatherState, PlantsAsInClearRecordingsAreNoCloud) {
   census.sectors[3].lone = {10e-4 * 4000, 20e-4 * 4000, 60e-4 * 4000, 80e-4 * 4000, 400e-4 * 4000};
   WeatherEstimator estimator;
   estimator.add(census, Stamp{1'000'000'000});
-  EXPECT_EQ(estimator.clouds(Pose3::Identity()), nullptr);
+  EXPECT_EQ(estimator.clouds(Pose3::Identity(), 0), nullptr);
 }
 
 TEST(WeatherState, OneScanDecidesNothing) {
