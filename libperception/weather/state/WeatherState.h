@@ -40,8 +40,9 @@ class WeatherEstimator {
   void add(const AirCensus& census, Stamp stamp);
   WeatherState state() const;
   /// The clouds that the lidar sees near by, in the last scan or in the last second, for a scan
-  /// from that pose; null: hardly any.
-  std::shared_ptr<const AirClouds> clouds(const Pose3& T_world_sensor) const;
+  /// from that pose; null: none is likelier than `weather`, P(the air is not clear), or than
+  /// hardly.
+  std::shared_ptr<const AirClouds> clouds(const Pose3& T_world_sensor, double weather) const;
 
  private:
   /// What scans showed lately: means that forget.
