@@ -1,18 +1,24 @@
 #include <fmt/format.h>
 
+#include <utility>
+#include <vector>
+
 #include "libperception/evaluation/tables/ReportCells.h"
 
 namespace perception {
 
-const char* nameOf(TruthMotion motion) {
-  switch (motion) {
-    case TruthMotion::kStanding:
-      return "standing";
-    case TruthMotion::kMoving:
-      return "moving";
-    default:
-      return "any";
+std::vector<FrontRow> frontRows(const Evaluation& evaluation) {
+  constexpr std::pair<const char*, TruthMotion> kMotions[] = {{"any", TruthMotion::kAny},
+                                                              {"standing", TruthMotion::kStanding},
+                                                              {"moving", TruthMotion::kMoving}};
+  std::vector<FrontRow> rows;
+  for (ClassId c = -1; c < static_cast<ClassId>(evaluation.class_names.size()); ++c) {
+    for (const auto& [name, motion] : kMotions) {
+      FrontRow row{c, name, frontFigures(evaluation, Pairing::kOneToOne, c, motion)};
+      if (row.figures.headings > 0) rows.push_back(std::move(row));
+    }
   }
+  return rows;
 }
 
 ReportTable frontTable(const EvaluationReport& report) {
@@ -31,16 +37,11 @@ ReportTable frontTable(const EvaluationReport& report) {
                   "neither.",
                   kStandingSpeed)};
   for (const EvaluatedRun& run : report.runs) {
-    const Evaluation& e = run.evaluation;
-    for (ClassId c = -1; c < static_cast<ClassId>(e.class_names.size()); ++c) {
-      for (const TruthMotion motion : kAllMotions) {
-        const FrontFigures f = frontFigures(e, Pairing::kOneToOne, c, motion);
-        if (f.headings == 0) continue;
-        table.rows.push_back({run.name, className(e, c), nameOf(motion),
-                              fmt::format("{}", f.matched), number(f.with_heading),
-                              number(f.front_known), number(f.known_reversed),
-                              number(f.other_reversed), number(f.calibration_error)});
-      }
+    for (const auto& [class_id, motion, f] : frontRows(run.evaluation)) {
+      table.rows.push_back({run.name, className(run.evaluation, class_id), motion,
+                            fmt::format("{}", f.matched), number(f.with_heading),
+                            number(f.front_known), number(f.known_reversed),
+                            number(f.other_reversed), number(f.calibration_error)});
     }
   }
   return table;

@@ -22,12 +22,15 @@ const char* nameOf(Pairing pairing);
 /// "all" for -1.
 std::string className(const Evaluation& evaluation, ClassId c);
 
-inline constexpr TruthMotion kAllMotions[] = {TruthMotion::kAny, TruthMotion::kStanding,
-                                              TruthMotion::kMoving};
-const char* nameOf(TruthMotion motion);
-
-/// What is known of the fronts of objects, by run, class and motion; rows where something has a
-/// heading.
+/// What is known of the fronts of one class (-1: all), so far as its objects move so.
+struct FrontRow {
+  ClassId class_id;
+  const char* motion;  ///< any, standing or moving
+  FrontFigures figures;
+};
+/// By class and motion; rows where something has a heading.
+std::vector<FrontRow> frontRows(const Evaluation& evaluation);
+/// The rows of each run.
 ReportTable frontTable(const EvaluationReport& report);
 
 // Tables of one run.

@@ -156,19 +156,15 @@ Json pairingJson(const Evaluation& evaluation, Pairing pairing) {
 
 Json frontsJson(const Evaluation& evaluation) {
   Json rows = Json::array();
-  for (ClassId c = -1; c < static_cast<ClassId>(evaluation.class_names.size()); ++c) {
-    for (const TruthMotion motion : kAllMotions) {
-      const FrontFigures f = frontFigures(evaluation, Pairing::kOneToOne, c, motion);
-      if (f.headings == 0) continue;
-      rows.push_back({{"class", className(evaluation, c)},
-                      {"motion", nameOf(motion)},
-                      {"matched", f.matched},
-                      {"with_heading", json(f.with_heading)},
-                      {"front_known", json(f.front_known)},
-                      {"known_reversed", json(f.known_reversed)},
-                      {"other_reversed", json(f.other_reversed)},
-                      {"calibration_error", json(f.calibration_error)}});
-    }
+  for (const auto& [class_id, motion, f] : frontRows(evaluation)) {
+    rows.push_back({{"class", className(evaluation, class_id)},
+                    {"motion", motion},
+                    {"matched", f.matched},
+                    {"with_heading", json(f.with_heading)},
+                    {"front_known", json(f.front_known)},
+                    {"known_reversed", json(f.known_reversed)},
+                    {"other_reversed", json(f.other_reversed)},
+                    {"calibration_error", json(f.calibration_error)}});
   }
   return rows;
 }
