@@ -144,14 +144,14 @@ bool isCoordinate(const Column& values) {
   return quantile(finite, 0.95) - quantile(finite, 0.05) >= kLeastSpread && !isClock(finite);
 }
 
-/// Whether heights of returns: a coordinate, or those of level ground below a scanner, which hardly
-/// differ but are negative, as no intensity, ring or time is.
+/// Whether heights of returns: a coordinate, or those of even ground below a scanner, which hardly
+/// differ but of which at least half are negative, as no intensity, ring or time is.
 bool isHeight(const Column& values) {
   if (isCoordinate(values)) return true;
   const Column finite = finiteOf(values);
   if (finite.size() < 2 || 2 * finite.size() < values.size()) return false;
   const double low = quantile(finite, 0.01), high = quantile(finite, 0.99);
-  return low > -kFarthestReturn && low < high && high < 0;
+  return low > -kFarthestReturn && low < high && quantile(finite, 0.5) < 0;
 }
 
 /// Share of the variance of the elevations that is between the values of a column.

@@ -127,14 +127,26 @@ TEST(CloudLayout, IntensitiesOfBytesAreTold) {
   EXPECT_EQ(layout->intensity_max, 255);
 }
 
-TEST(CloudLayout, LevelGroundAloneHasHeights) {
+/// Returns of level ground below the scanner, with noise.
+std::vector<Row> levelGround() {
   std::vector<Row> rows;
   for (const Row& row : scan())
     if (std::abs(row[2] + 1.8F) < 0.01F) rows.push_back({row[0], row[1], row[2], row[3]});
-  ASSERT_GT(rows.size(), 500u);
   std::mt19937 random(3);
   std::normal_distribution<float> noise(0, 0.02F);
   for (Row& row : rows) row[2] += noise(random);
+  return rows;
+}
+
+TEST(CloudLayout, LevelGroundAloneHasHeights) {
+  const std::vector<Row> rows = levelGround();
+  ASSERT_GT(rows.size(), 500u);
+  EXPECT_EQ(columnsOf(rows), (Names{"x", "y", "z", "intensity"}));
+}
+
+TEST(CloudLayout, GroundThatRisesAboveTheScannerFarAheadHasHeights) {
+  std::vector<Row> rows = levelGround();
+  for (std::size_t i = 0; i < rows.size(); i += 30) rows[i][2] = 2;
   EXPECT_EQ(columnsOf(rows), (Names{"x", "y", "z", "intensity"}));
 }
 
