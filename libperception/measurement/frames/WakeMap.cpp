@@ -38,7 +38,7 @@ void WakeMap::advance(Stamp now) {
 }
 
 void WakeMap::mark(const VehicleFootprint& v) {
-  const double moved = std::max(kPresent * v.speed, v.advanced);
+  const double moved = std::max({kPresent * v.speed, v.advanced, v.came});
   const double reach = v.half_length + moved + halfWidth(v, kLife);
   const int last_x = cellOf(v.center.x() + reach), last_y = cellOf(v.center.y() + reach);
   for (int y = cellOf(v.center.y() - reach); y <= last_y; ++y)
@@ -48,6 +48,10 @@ void WakeMap::mark(const VehicleFootprint& v) {
 }
 
 std::optional<double> WakeMap::age(const Vector2& place, Stamp now) const {
+  return sinceLeft(place, now, false);
+}
+
+std::optional<double> WakeMap::sinceLeft(const Vector2& place, Stamp now, bool came) const {
   const std::uint64_t row = reached_[static_cast<std::size_t>(cellOf(place.y()) & (kCells - 1))];
   if ((row >> (cellOf(place.x()) & (kCells - 1)) & 1) == 0) return std::nullopt;
   for (auto v = vehicles_.rbegin(); v != vehicles_.rend(); ++v) {  // the last vehicle counts
@@ -56,7 +60,8 @@ std::optional<double> WakeMap::age(const Vector2& place, Stamp now) const {
     const double moved = age <= kPresent ? age * v->speed : 0;
     const Vector2 d = place - v->center - moved * v->along;
     const double ahead = d.dot(v->along), behind = -v->half_length - ahead;  // [m] of the rear
-    const bool swept = age > kPresent && behind > 0 && behind <= v->advanced;
+    const double way = came ? std::max(v->came, v->advanced) : v->advanced;
+    const bool swept = age > kPresent && behind > 0 && behind <= way;
     if (std::abs(ahead) > v->half_length && !swept) continue;
     if (std::abs(d.x() * v->along.y() - d.y() * v->along.x()) <= halfWidth(*v, age))
       return swept ? age + behind / v->speed : age;
@@ -65,7 +70,7 @@ std::optional<double> WakeMap::age(const Vector2& place, Stamp now) const {
 }
 
 bool WakeMap::hasLeft(const Vector2& place, Stamp now) const {
-  const auto since = age(place, now);
+  const auto since = sinceLeft(place, now, true);
   return since && *since > kPresent;
 }
 

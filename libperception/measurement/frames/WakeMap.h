@@ -18,6 +18,7 @@ struct VehicleFootprint {
   double speed = 0;                        ///< [m/s]
   double half_length = 0, half_width = 0;  ///< [m]
   double advanced = 0;  ///< [m] driven since its footprint before: the way between was swept, too
+  double came = 0;      ///< [m] that it must have driven before its first footprint
 };
 
 /// The places that vehicles have just left, where spray, blown snow and exhaust hang: a cluster
@@ -33,7 +34,8 @@ class WakeMap {
 
   /// [s] since a vehicle left the place [m, world]; empty: it is in no wake.
   std::optional<double> age(const Vector2& place, Stamp now) const;
-  /// Whether a vehicle was at the place [m, world] and is there no more.
+  /// Whether a vehicle was at the place [m, world] and is there no more; the way that it came
+  /// counts, too.
   bool hasLeft(const Vector2& place, Stamp now) const;
   /// [m^2] of all wakes; where two overlap, of both.
   double area(Stamp now) const;
@@ -46,6 +48,8 @@ class WakeMap {
   static double detection(Modality modality, double age);
 
  private:
+  /// [s] since a vehicle left the place; `came`: the way that it came counts.
+  std::optional<double> sinceLeft(const Vector2& place, Stamp now, bool came) const;
   /// Marks the cells that the vehicle's wake may reach in its life.
   void mark(const VehicleFootprint& vehicle);
 

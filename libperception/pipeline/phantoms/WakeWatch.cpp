@@ -19,6 +19,7 @@ constexpr double kWakeMemory = 10;         // [s] of phantoms seen, as of clutte
 constexpr double kWide = 1000;             // [m^2] of wakes without a phantom, to begin with
 constexpr double kMisjudged = 0.3;         // share of phantoms that are not told by their shape
 constexpr double kLongestStep = 0.3;       // [s] between two footprints of a track
+constexpr double kCame = 1;                // [s] for which it drove before its first one
 constexpr double kNone = 0.05;             // phantoms remembered: fewer are none
 
 /// The vehicle of a track that has a wake; empty: it has none.
@@ -97,7 +98,9 @@ void WakeWatch::addVehicles(Stamp stamp, const Hypothesis& hypothesis) {
     auto vehicle = vehicleOf(*track, classes_, stamp);
     if (!vehicle) continue;
     const auto before = last_.find(track->id);
-    if (before != last_.end())
+    if (before == last_.end())
+      vehicle->came = kCame * vehicle->speed;
+    else
       vehicle->advanced = vehicle->speed * std::min(kLongestStep, stamp - before->second);
     wakes_.add(*vehicle);
     driving[track->id] = stamp;
