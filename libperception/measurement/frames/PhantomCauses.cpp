@@ -12,8 +12,11 @@ bool PhantomCauses::any() const {
 }
 
 CausesHere PhantomCauses::at(const Vector2& place, Stamp now) const {
-  const bool left = wakes != nullptr && wakes->hasLeft(place, now);
-  return {weather, clouds != nullptr ? clouds->at(place) : 0, left ? kWake : 0};
+  CausesHere here = {weather, clouds != nullptr ? clouds->at(place) : 0};
+  if (wakes == nullptr || !wakes->mayHaveLeft(place, now)) return here;
+  here.came = kWake;
+  here.wake = wakes->hasLeft(place, now) ? kWake : 0;
+  return here;
 }
 
 }  // namespace perception

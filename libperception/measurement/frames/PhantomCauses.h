@@ -14,10 +14,11 @@ struct CausesHere {
   double weather = 0;  ///< the air is not clear, everywhere
   double cloud = 0;    ///< the lidar sees a cloud there
   double wake = 0;     ///< a vehicle has just left the place
-  double likelier() const { return std::max({weather, cloud, wake}); }
+  double came = 0;     ///< the same, or it must have come that way before it was first seen
+  double likelier() const { return std::max({weather, cloud, came}); }
   /// Whether likely a cloud hangs there that is no weather, whose returns may lie as close together
   /// as a wall's.
-  bool inCloud() const { return std::max(cloud * (1 - weather), wake) > 0.5; }
+  bool inCloud() const { return std::max(cloud * (1 - weather), came) > 0.5; }
 };
 
 /// What may make phantoms of a lidar's returns at the instant of a scan, as the sensors themselves

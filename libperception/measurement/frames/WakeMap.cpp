@@ -70,6 +70,11 @@ std::optional<double> WakeMap::sinceLeft(const Vector2& place, Stamp now, bool c
 }
 
 bool WakeMap::hasLeft(const Vector2& place, Stamp now) const {
+  const auto since = sinceLeft(place, now, false);
+  return since && *since > kPresent;
+}
+
+bool WakeMap::mayHaveLeft(const Vector2& place, Stamp now) const {
   const auto since = sinceLeft(place, now, true);
   return since && *since > kPresent;
 }

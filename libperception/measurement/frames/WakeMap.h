@@ -34,9 +34,10 @@ class WakeMap {
 
   /// [s] since a vehicle left the place [m, world]; empty: it is in no wake.
   std::optional<double> age(const Vector2& place, Stamp now) const;
-  /// Whether a vehicle was at the place [m, world] and is there no more; the way that it came
-  /// counts, too.
+  /// Whether a vehicle was at the place [m, world] and is there no more.
   bool hasLeft(const Vector2& place, Stamp now) const;
+  /// The same, or it must have come that way before it was first seen.
+  bool mayHaveLeft(const Vector2& place, Stamp now) const;
   /// [m^2] of all wakes; where two overlap, of both.
   double area(Stamp now) const;
 
