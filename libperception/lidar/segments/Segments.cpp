@@ -6,6 +6,7 @@
 #include <numeric>
 #include <utility>
 
+#include "libperception/core/math/Angle.h"
 #include "libperception/lidar/segments/GrazedSurfaces.h"
 #include "libperception/lidar/segments/SpaceLinkage.h"
 #include "libperception/simd/Dispatch.h"
@@ -93,16 +94,18 @@ class SegmentFinder {
     return groups;
   }
 
-  void addParts(const ReturnGroup& members, int whole, std::size_t level) {
+  /// `of_longer`: `members` are longer than any whole.
+  void addParts(const ReturnGroup& members, int whole, std::size_t level, bool of_longer = false) {
     if (level == std::size(kLinkLevels)) return;
     const auto groups = groupsOf(members, kLinkLevels[level], min_points_);
     if (whole >= 0 && groups.size() < 2) return addParts(members, whole, level + 1);
-    for (const ReturnGroup& group : groups) addGroup(group, whole, level);
+    for (const ReturnGroup& group : groups)
+      if (!of_longer || !isLine(group)) addGroup(group, whole, level);
   }
 
   /// A group of a level, and its parts.
   void addGroup(const ReturnGroup& group, int whole, std::size_t level) {
-    if (sizeOf(group) > max_size_) return addParts(group, whole, level + 1);
+    if (sizeOf(group) > max_size_) return addParts(group, whole, level + 1, true);
     const auto number = static_cast<int>(segments_.size());
     if (add(group, whole)) addParts(group, number, level + 1);
   }
@@ -144,6 +147,28 @@ class SegmentFinder {
         if (parts_wanted && weightOf(groups[m]) >= min_points_) addGroup(groups[m], whole, 0);
       }
     }
+  }
+
+  /// Whether the directions of returns lie on a line: one beam, or one column of beams, has cut
+  /// them out of a surface, and their place goes along with the sensor.
+  bool isLine(const ReturnGroup& members) const {
+    constexpr double kThin = radians(0.1);  // rms deviation (assumed)
+    if (!sensor_) return false;
+    Vector2 sum = Vector2::Zero();
+    Matrix2 squares = Matrix2::Zero();
+    double first = 0;
+    for (const std::uint32_t i : members) {
+      const Vector3 beam = Vector3(x_[i], y_[i], height_[i]) - *sensor_;
+      const double azimuth = std::atan2(beam.y(), beam.x());
+      if (i == members.front()) first = azimuth;
+      const Vector2 direction(wrapAngle(azimuth - first),
+                              std::atan2(beam.z(), beam.head<2>().norm()));
+      sum += direction, squares += direction * direction.transpose();
+    }
+    const auto n = static_cast<double>(members.size());
+    const Matrix2 covariance = squares / n - sum * sum.transpose() / (n * n);
+    const double half = covariance.trace() / 2;
+    return half - std::sqrt(std::max(half * half - covariance.determinant(), 0.0)) < kThin * kThin;
   }
 
   double weightOf(const ReturnGroup& group) const {

@@ -157,6 +157,31 @@ TEST(Segments, OfWholesTooLongThePartsStandAlone) {
   EXPECT_TRUE(row.segments(8, 4).empty());
 }
 
+TEST(Segments, ARowOfBeamsOnAWallIsNothingOfItsOwn) {
+  const Vector3 sensor(0, 0, 0.6);
+  Obstacles wall;  // 40 m long, 9 m to the left; 16 beams, whose rows lie 0.3 m apart on it
+  for (int beam = -15; beam <= 15; beam += 2) {
+    for (int column = -325; column <= 325; ++column) {
+      const double azimuth = radians(0.2 * column), range = 9 / std::cos(azimuth);
+      const double height = sensor.z() + range * std::tan(radians(beam));
+      if (height > 0.3 && height < 3) wall.add(range * std::sin(azimuth), 9, height);
+    }
+  }
+  const auto segments = findSegments(wall.x, wall.y, wall.height, 8, 20, wall.trust, {}, sensor);
+  for (const Segment& segment : segments) {
+    double least = 90, most = -90;
+    for (const std::uint32_t i : segment.points) {
+      const double range = std::hypot(wall.x[i], wall.y[i]);
+      const double elevation =
+          degrees(std::atan2(static_cast<double>(wall.height[i]) - sensor.z(), range));
+      least = std::min(least, elevation), most = std::max(most, elevation);
+    }
+    EXPECT_GT(most - least, 1) << segment.points.size() << " returns of one beam";
+  }
+  EXPECT_GT(findSegments(wall.x, wall.y, wall.height, 8, 20).size(), segments.size())
+      << "without the sensor's place the beams are not known";
+}
+
 TEST(Segments, ReturnsCountByTheirTrust) {
   Obstacles person;
   person.addWall(10, 0, 10, 0.5);
