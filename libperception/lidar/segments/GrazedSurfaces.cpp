@@ -291,9 +291,10 @@ class SurfaceFinder {
 
 std::vector<std::vector<std::uint32_t>> grazedSurfaces(const ReturnPlaces& places,
                                                        const std::vector<ReturnGroup>& groups,
-                                                       const Vector3& sensor) {
-  const ReturnDirections directions(places, sensor);
-  return SurfaceFinder(places, groups, sensor, directions, azimuthStep(directions, groups)).find();
+                                                       const Vector3& sensor,
+                                                       const ReturnDirections& directions,
+                                                       double step) {
+  return SurfaceFinder(places, groups, sensor, directions, step).find();
 }
 
 }  // namespace perception

@@ -121,7 +121,10 @@ class SegmentFinder {
   void addWholes(const ReturnGroup& all) {
     constexpr double kLeastOfColumn = 4;  // returns (assumed)
     const auto groups = groupsOf(all, kLinkLevels[0], std::min(min_points_, kLeastOfColumn - 1e-6));
-    const auto surfaces = grazedSurfaces({x_, y_, height_}, groups, *sensor_);
+    const ReturnPlaces places = {x_, y_, height_};
+    directions_.emplace(places, *sensor_);
+    step_ = azimuthStep(*directions_, groups);
+    const auto surfaces = grazedSurfaces(places, groups, *sensor_, *directions_, step_);
     std::vector<char> placed(groups.size(), 0);
     std::vector<const std::vector<std::uint32_t>*> surface_of(groups.size(), nullptr);
     for (const auto& surface : surfaces)
@@ -149,26 +152,24 @@ class SegmentFinder {
     }
   }
 
-  /// Whether the directions of returns lie on a line: one beam, or one column of beams, has cut
-  /// them out of a surface, and their place goes along with the sensor.
+  /// Whether the directions of returns lie on a line: one beam, or up to three columns of beams,
+  /// have cut them out of a surface, and their place goes along with the sensor.
   bool isLine(const ReturnGroup& members) const {
-    constexpr double kThin = radians(0.1);  // rms deviation (assumed)
-    if (!sensor_) return false;
+    constexpr double kThin = radians(0.1), kColumns = 0.9;  // [rad], [steps]: rms (assumed)
+    if (!directions_) return false;
     Vector2 sum = Vector2::Zero();
     Matrix2 squares = Matrix2::Zero();
-    double first = 0;
+    const float first = directions_->azimuth[members.front()];
     for (const std::uint32_t i : members) {
-      const Vector3 beam = Vector3(x_[i], y_[i], height_[i]) - *sensor_;
-      const double azimuth = std::atan2(beam.y(), beam.x());
-      if (i == members.front()) first = azimuth;
-      const Vector2 direction(wrapAngle(azimuth - first),
-                              std::atan2(beam.z(), beam.head<2>().norm()));
+      const auto turn = static_cast<double>(directions_->azimuth[i] - first);
+      const Vector2 direction(wrapAngle(turn), static_cast<double>(directions_->elevation[i]));
       sum += direction, squares += direction * direction.transpose();
     }
     const auto n = static_cast<double>(members.size());
     const Matrix2 covariance = squares / n - sum * sum.transpose() / (n * n);
     const double half = covariance.trace() / 2;
-    return half - std::sqrt(std::max(half * half - covariance.determinant(), 0.0)) < kThin * kThin;
+    const double least = half - std::sqrt(std::max(half * half - covariance.determinant(), 0.0));
+    return least < kThin * kThin || std::sqrt(covariance(0, 0)) < kColumns * step_;
   }
 
   double weightOf(const ReturnGroup& group) const {
@@ -194,6 +195,8 @@ class SegmentFinder {
   const LinkLength& link_;
   const double min_points_, max_size_;
   RawVector<double> length_;  ///< [m] link of each return, at the first level's share of 1
+  std::optional<ReturnDirections> directions_;  ///< with the sensor's place
+  double step_ = 0;                             ///< [rad] of azimuth between columns; 0: unknown
   std::vector<Segment> segments_;
 };
 

@@ -20,7 +20,10 @@ struct Scene {
   std::vector<ReturnGroup> groups;
 
   ReturnPlaces places() const { return {x, y, height}; }
-  Sets joined() const { return grazedSurfaces(places(), groups, sensor); }
+  Sets joined() const {
+    const ReturnDirections directions(places(), sensor);
+    return grazedSurfaces(places(), groups, sensor, directions, azimuthStep(directions, groups));
+  }
 
   /// The returns of column k (azimuth k steps) at a distance, between two heights.
   void addColumn(ReturnGroup& group, int k, double range, double bottom, double top) {
