@@ -100,7 +100,7 @@ class SegmentFinder {
     const auto groups = groupsOf(members, kLinkLevels[level], min_points_);
     if (whole >= 0 && groups.size() < 2) return addParts(members, whole, level + 1);
     for (const ReturnGroup& group : groups)
-      if (!of_longer || !isLine(group)) addGroup(group, whole, level);
+      if (!of_longer || !isCutOut(group, members)) addGroup(group, whole, level);
   }
 
   /// A group of a level, and its parts.
@@ -152,24 +152,33 @@ class SegmentFinder {
     }
   }
 
-  /// Whether the directions of returns lie on a line: one beam, or up to three columns of beams,
-  /// have cut them out of a surface, and their place goes along with the sensor.
-  bool isLine(const ReturnGroup& members) const {
+  /// Whether one beam, or up to three columns of beams, have cut a part out of a surface that goes
+  /// on above, below or beside it, so that its place goes along with the sensor.
+  bool isCutOut(const ReturnGroup& part, const ReturnGroup& surface) const {
     constexpr double kThin = radians(0.1), kColumns = 0.9;  // [rad], [steps]: rms (assumed)
     if (!directions_) return false;
+    const float first = directions_->azimuth[part.front()];
+    const auto turn = [&](std::uint32_t i) {
+      return wrapAngle(static_cast<double>(directions_->azimuth[i] - first));
+    };
     Vector2 sum = Vector2::Zero();
     Matrix2 squares = Matrix2::Zero();
-    const float first = directions_->azimuth[members.front()];
-    for (const std::uint32_t i : members) {
-      const auto turn = static_cast<double>(directions_->azimuth[i] - first);
-      const Vector2 direction(wrapAngle(turn), static_cast<double>(directions_->elevation[i]));
+    double right = 0, left = 0;
+    for (const std::uint32_t i : part) {
+      const Vector2 direction(turn(i), static_cast<double>(directions_->elevation[i]));
       sum += direction, squares += direction * direction.transpose();
+      right = std::min(right, direction.x()), left = std::max(left, direction.x());
     }
-    const auto n = static_cast<double>(members.size());
+    const auto n = static_cast<double>(part.size());
     const Matrix2 covariance = squares / n - sum * sum.transpose() / (n * n);
+    if (std::sqrt(covariance(0, 0)) < kColumns * step_) return true;
     const double half = covariance.trace() / 2;
-    const double least = half - std::sqrt(std::max(half * half - covariance.determinant(), 0.0));
-    return least < kThin * kThin || std::sqrt(covariance(0, 0)) < kColumns * step_;
+    if (half - std::sqrt(std::max(half * half - covariance.determinant(), 0.0)) >= kThin * kThin)
+      return false;
+    const auto in_its_columns = std::count_if(surface.begin(), surface.end(), [&](auto i) {
+      return turn(i) >= right && turn(i) <= left;
+    });
+    return 2 * static_cast<std::size_t>(in_its_columns) > 3 * part.size();
   }
 
   double weightOf(const ReturnGroup& group) const {
