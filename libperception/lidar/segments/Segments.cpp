@@ -156,7 +156,9 @@ class SegmentFinder {
   /// on above, below or beside it, so that its place goes along with the sensor.
   bool isCutOut(const ReturnGroup& part, const ReturnGroup& surface) const {
     constexpr double kThin = radians(0.1), kColumns = 0.9;  // [rad], [steps]: rms (assumed)
-    if (!directions_) return false;
+    constexpr double kNear = 25;  // [m] farther off, one row may be all of a thing (assumed)
+    const std::uint32_t one = part.front();
+    if (!directions_ || std::hypot(x_[one], y_[one]) > kNear) return false;
     const float first = directions_->azimuth[part.front()];
     const auto turn = [&](std::uint32_t i) {
       return wrapAngle(static_cast<double>(directions_->azimuth[i] - first));
