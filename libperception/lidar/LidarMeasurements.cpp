@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "libperception/lidar/outline/FrontShape.h"
 #include "libperception/lidar/outline/Outline.h"
 
 namespace perception {
@@ -121,9 +122,12 @@ Measurement measurementOf(const ScanContext& scan, const Cluster& cluster) {
   m.label = cluster.stable ? kCarSized : kUnstable;
 
   std::vector<Vector2> places;
-  places.reserve(cluster.points.size());
-  for (const std::uint32_t i : cluster.points)
+  std::vector<double> above;
+  places.reserve(cluster.points.size()), above.reserve(cluster.points.size());
+  for (const std::uint32_t i : cluster.points) {
     places.emplace_back(static_cast<double>(scan.found.x[i]), static_cast<double>(scan.found.y[i]));
+    above.push_back(static_cast<double>(scan.found.above[i]));
+  }
   const Vector2 sensor = scan.found.points.sensor.head<2>();
   m.sides = fitBox(places, sensor, !outline.left_hidden, !outline.right_hidden, scan.params.boxes);
   const Vector2 center = m.sides ? m.sides->center : cluster.centroid;
@@ -133,6 +137,8 @@ Measurement measurementOf(const ScanContext& scan, const Cluster& cluster) {
     m.sides->yaw = wrapAxis(m.sides->yaw + yawOf(scan.frame.ego.T_world_ego));
     m.sides->yaw_sigma = std::hypot(m.sides->yaw_sigma, scan.frame.ego.uncertainty.sigma_yaw);
     m.sides->center = m.position;
+    m.sides->front_log_odds =
+        frontLogOdds(places, above, m.sides->yaw - yawOf(scan.frame.ego.T_world_ego));
     m.position_sigma = std::clamp(m.sides->length / 3, 0.5, 2.0);
     if (!cluster.stable)
       m.sides->length_complete = m.sides->width_complete =

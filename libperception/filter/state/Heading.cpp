@@ -93,6 +93,13 @@ FrontBackAmbiguity nextFrontBack(const FrontBackAmbiguity& bit, bool same,
   return next;
 }
 
+void seeShape(double front_log_odds, FrontBackAmbiguity& bit) {
+  constexpr int kMostViews =
+      20;  // older views fade: other objects may have been mixed in (assumed)
+  bit.views = std::min(bit.views + 1, kMostViews);
+  bit.shape += (front_log_odds - bit.shape) / bit.views;
+}
+
 double nextAxisLogOdds(const FrontBackAmbiguity& bit, const MeasuredHeading& seen, double theta,
                        double theta_variance, double stray) {
   const HeadingResidual r = headingResidual(seen, theta, HeadingMode::kSplit);
@@ -107,7 +114,7 @@ double FrontBackAmbiguity::frontProbability() const {
   const double reversing =
       (1 - kForward) * std::max(kLeastShare, std::exp(-std::abs(traveled) / kReverseFor));
   const double motion = logForward(traveled, kChanceTravel * kChanceTravel, 1 - reversing);
-  return 1 / (1 + std::exp(-(log_odds + motion)));
+  return 1 / (1 + std::exp(-(log_odds + shape + motion)));
 }
 
 double probabilityForward(double v, double v_variance) {
@@ -115,7 +122,8 @@ double probabilityForward(double v, double v_variance) {
 }
 
 bool asksForReversal(const FrontBackAmbiguity& bit, double v, double v_variance, HeadingMode mode) {
-  return mode == HeadingMode::kSplit && bit.log_odds + logForward(v, v_variance) < kReverseAt;
+  return mode == HeadingMode::kSplit &&
+         bit.log_odds + bit.shape + logForward(v, v_variance) < kReverseAt;
 }
 
 }  // namespace perception

@@ -21,13 +21,16 @@ struct FrontBackAmbiguity {
   int last = 0;         ///< the last detection: 1 agreed with theta, -1 did not, 0: none yet
   bool driven = false;  ///< it has surely moved along theta
   double traveled = 0;  ///< [m] along theta since it is known; negative: against it
+  double shape = 0;     ///< mean of PartialBox::front_log_odds along theta over its views
+  int views = 0;        ///< that told a front by the shape, up to a limit
 
   bool measured() const { return same + opposite > 0; }
   FrontBackAmbiguity reversed() const {
-    return {-log_odds, opposite, same, -lane, axis_log_odds, -last, driven, -traveled};
+    return {-log_odds, opposite, same,      -lane,  axis_log_odds,
+            -last,     driven,   -traveled, -shape, views};
   }
-  /// Probability that theta points to the front, from detections, lanes and the way that it has
-  /// traveled, which vehicles do forward 97 % of the time, and the more
+  /// Probability that theta points to the front, from detections, lanes, the shape and the way that
+  /// it has traveled, which vehicles do forward 97 % of the time, and the more
   /// surely the farther they go; .5: unknown.
   double frontProbability() const;
 };
@@ -53,6 +56,10 @@ FrontBackAmbiguity firstFrontBack(const MeasuredHeading& seen);
 /// previous detection.
 FrontBackAmbiguity nextFrontBack(const FrontBackAmbiguity& bit, bool same,
                                  const MeasuredHeading& seen);
+
+/// Counts one more view of an object by its shape: the log-odds that theta points to the front.
+/// Views of one object err alike, so their mean counts and not their sum.
+void seeShape(double front_log_odds, FrontBackAmbiguity& bit);
 
 /// Share of stray axes, uniform instead of within their deviation of the object's: 1 % of Geiger's
 /// on KITTI lie beyond 22.5 deg (method.md 7).

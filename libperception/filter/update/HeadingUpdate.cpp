@@ -22,6 +22,22 @@ bool movesAlongItsAxis(const ClassFilter& f, const FilterParams& p) {
   return std::abs(f.x[2]) > std::max(p.orient_min_speed, kSureSpeed * std::sqrt(f.P(2, 2)));
 }
 
+/// The shape of a car tells its front where its box lies along its axis.
+void useShape(const PartialBox& sides, ClassFilter& f) {
+  constexpr double kAligned = 0.9;  // cosine (assumed)
+  const double along = std::cos(sides.yaw - f.x[3]);
+  if (sides.front_log_odds == 0 || std::abs(along) < kAligned) return;
+  seeShape(along > 0 ? sides.front_log_odds : -sides.front_log_odds, f.heading);
+}
+
+/// Whether the opposite of theta, which no detection has told, is rather the front: by a clear
+/// speed, else by the shape and the way so far.
+bool facesBack(const ClassFilter& f, const FilterParams& p) {
+  constexpr double kBack = 0.38;  // log-odds of -0.5, as for detections
+  if (std::abs(f.x[2]) > p.orient_min_speed && movesSurely(f)) return f.x[2] < 0;
+  return f.heading.views > 0 && f.heading.frontProbability() < kBack;
+}
+
 }  // namespace
 
 void useHeading(const MeasuredHeading& seen, const FilterParams& params, ClassFilter& f,
@@ -66,9 +82,9 @@ void findHeading(const Measurement& m, const std::optional<BirthState>& birth,
   }
   if (m.heading) useHeading(*m.heading, p, f, !m.sides);
   if (!f.oriented) return;
-  const bool clearly_back = f.x[2] < -p.orient_min_speed && f.x[2] * f.x[2] > 4 * f.P(2, 2);
+  if (m.sides) useShape(*m.sides, f);
   const bool back = f.heading.measured() ? asksForReversal(f.heading, f.x[2], f.P(2, 2), p.heading)
-                                         : clearly_back;
+                                         : facesBack(f, p);
   if (back) reverse(f);
 }
 

@@ -65,6 +65,15 @@ TEST(FrontBackAmbiguity, ReversedSaysTheOppositeOfItself) {
   EXPECT_LT(bit.frontProbability(), 0.1);
 }
 
+TEST(FrontBackAmbiguity, ViewsOfTheShapeCountByTheirMean) {
+  FrontBackAmbiguity bit;
+  for (int i = 0; i < 50; ++i) seeShape(i % 2 == 0 ? 3 : 1, bit);
+  EXPECT_NEAR(bit.frontProbability(), 1 / (1 + std::exp(-2)), 0.02);
+  EXPECT_NEAR(bit.frontProbability() + bit.reversed().frontProbability(), 1, 1e-12);
+  for (int i = 0; i < 60; ++i) seeShape(-3, bit);
+  EXPECT_LT(bit.frontProbability(), 0.1) << "another object's views fade";
+}
+
 TEST(FrontBackAmbiguity, OfDetectionsIsTheirShareThatIsRight) {
   EXPECT_NEAR(firstFrontBack(seen(0, 0.3)).frontProbability(), 0.7, 1e-9);
 }

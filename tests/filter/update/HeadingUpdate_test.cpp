@@ -77,6 +77,38 @@ TEST(HeadingUpdate, BoxesDoNotDenyTheAxisAlongWhichItHasDriven) {
   EXPECT_FALSE(deniedBy(20, kPi / 2, f));
 }
 
+/// After `n` boxes along `yaw` whose shape tells their front by `log_odds`.
+void seeBoxes(int n, double yaw, double log_odds, ClassFilter& f) {
+  Measurement m;
+  m.sides.emplace();
+  m.sides->yaw = yaw;
+  m.sides->front_log_odds = log_odds;
+  for (int i = 0; i < n; ++i) findHeading(m, {}, {}, f);
+}
+
+TEST(HeadingUpdate, AParkedCarIsTurnedToTheFrontThatItsShapeTells) {
+  ClassFilter f = car(0.2);
+  seeBoxes(3, 0.2, -3, f);
+  EXPECT_NEAR(std::abs(wrapAngle(f.x[3] - 0.2)), kPi, 1e-9);
+  EXPECT_GT(f.heading.frontProbability(), 0.95);
+  seeBoxes(20, 0.2, -3, f);
+  EXPECT_NEAR(std::abs(wrapAngle(f.x[3] - 0.2)), kPi, 1e-9) << "and stays so";
+  EXPECT_LT(f.heading.frontProbability(), 0.96) << "views of one car err alike";
+}
+
+TEST(HeadingUpdate, AClearSpeedOutweighsTheShape) {
+  ClassFilter f = car(0.2, 8);
+  seeBoxes(20, 0.2, -3, f);
+  EXPECT_NEAR(f.x[3], 0.2, 1e-9);
+  EXPECT_EQ(f.x[2], 8);
+}
+
+TEST(HeadingUpdate, ShapesOfBoxesAcrossTheAxisTellNothing) {
+  ClassFilter f = car(0.2);
+  seeBoxes(20, 0.2 + kPi / 2, -3, f);
+  EXPECT_EQ(f.heading.frontProbability(), 0.5);
+}
+
 TEST(HeadingUpdate, ReversedHeadingsAreNoOtherAxis) {
   ClassFilter f = car(0.3);
   for (int i = 0; i < 20; ++i) after(1, i % 3 == 0 ? 0.3 + kPi : 0.3, f);
