@@ -8,7 +8,7 @@ namespace perception {
 namespace {
 
 constexpr std::size_t kCells = 10;         // along the side (assumed)
-constexpr std::size_t kLeastCells = 8;     // with a top edge (assumed)
+constexpr std::size_t kLeastTops = 8;      // with a top edge (assumed)
 constexpr std::size_t kLeastInCell = 3;    // returns that show the top edge of a cell (assumed)
 constexpr std::size_t kLeastReturns = 60;  // (assumed)
 constexpr double kShortest = 3.5, kLongest = 6;  // [m] of cars; less: a part is hidden (assumed)
@@ -50,7 +50,7 @@ double frontLogOdds(const std::vector<Vector2>& places, const std::vector<double
     if (top > kHighest) return 0;
     n += 1, x += u, z += top, xx += u * u, xz += u * top;
   }
-  if (n < kLeastCells) return 0;
+  if (n < kLeastTops) return 0;
   const double fall = -(n * xz - x * z) / (n * xx - x * x);
   return std::clamp(kPerFall * fall, -kMost, kMost);
 }
