@@ -28,7 +28,9 @@ struct FromCenter {
         radius(1 / std::abs(corridor.curvature)),
         to_center(radius - side * y) {}
   double s() const { return straight ? x : radius * std::atan2(x, to_center); }
-  double d() const { return straight ? y : side * (radius - std::hypot(x, to_center)); }
+  double d() const {
+    return straight ? y : side * (radius - std::sqrt(x * x + to_center * to_center));
+  }
 };
 
 /// Bounds on points given from a base, along and across the direction of travel.
