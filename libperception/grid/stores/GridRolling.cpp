@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <limits>
 #include <memory>
 #include <new>
 #include <utility>
@@ -88,12 +89,13 @@ class GridRolling final : public SafetyGrid {
   std::vector<GridCell> occupiedWithin(const GridArea& area) const override {
     const auto least = leastOccupied();
     return cellsWhere(
-        area, [=](std::size_t slot) { return was_hit_[slot] != 0 && mayReach(slot, least); },
+        area, [=](std::size_t slot) { return was_hit_[slot] != 0 && mayReach(slot, least); }, least,
         [this](double v) { return v > params().occupied; });
   }
   std::vector<GridCell> knownCells() const override {
     return cellsWhere(
-        {}, [](std::size_t) { return true; }, [](double v) { return v != 0; });
+        {}, [](std::size_t) { return true; }, std::numeric_limits<std::int16_t>::min(),
+        [](double v) { return v != 0; });
   }
 
   void restore(const std::vector<GridCell>& cells) override {
@@ -147,22 +149,28 @@ class GridRolling final : public SafetyGrid {
                                    static_cast<int>(layers_), least);
   }
 
-  /// `column_may`: fast test of a column by its slot; `wanted`: test of a cell's log-odds.
+  /// `column_may`: fast test of a column by its slot; `least`: wanted cells have no lower value;
+  /// `wanted`: test of a cell's log-odds.
   template <class ColumnMay, class Wanted>
   std::vector<GridCell> cellsWhere(const GridArea& area, const ColumnMay& column_may,
-                                   const Wanted& wanted) const {
+                                   std::int16_t least, const Wanted& wanted) const {
     std::vector<GridCell> cells;
     if (!started_) return cells;
     const auto [x_begin, x_end] = columnsIn(first_.x, area.x_min, area.x_max);
     const auto [y_begin, y_end] = columnsIn(first_.y, area.y_min, area.y_max);
+    const std::int64_t lowest = modulo(first_.z, layers_);
     for (std::int64_t y = y_begin; y < y_end; ++y) {
       std::int64_t x = x_begin;
       square_.forRow(x, y, x_end - x_begin, [&](std::size_t begin, std::size_t count) {
         for (std::size_t slot = begin; slot < begin + count; ++slot, ++x) {
           if (!column_may(slot)) continue;
           const std::int16_t* values = values_.data() + slot * static_cast<std::size_t>(layers_);
+          std::int64_t layer = lowest;
           for (std::int64_t z = first_.z; z < first_.z + layers_; ++z) {
-            const double v = valueOf(values[modulo(z, layers_)], slot);
+            const std::int16_t value = values[layer];
+            layer = layer + 1 == layers_ ? 0 : layer + 1;
+            if (value < least) continue;
+            const double v = valueOf(value, slot);
             if (wanted(v))
               cells.push_back({{centerOf(x), centerOf(y), centerOf(z)},
                                Vector3::Constant(params().resolution),
