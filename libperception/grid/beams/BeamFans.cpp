@@ -126,7 +126,10 @@ PERCEPTION_LANES void markGathered(const Fan& fan, const float* guides, Mask* ga
       first[side] |= rows[k + kCount];
       first[2 * side] |= rows[k + 2 * kCount];
     }
-    std::memset(rows, 0, kRows * kCount * sizeof(Mask));
+    // Row by row: so short a call is a few instructions, one of all rows is a loop in the
+    // processor.
+    for (int row = 0; row < kRows; ++row)
+      std::memset(rows + row * kCount, 0, kCount * sizeof(Mask));
   }
 }
 
