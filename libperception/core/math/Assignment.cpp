@@ -17,6 +17,7 @@ void AssignmentSolver::begin(int columns) {
   columns_ = columns;
   options_.clear();
   first_.assign(1, 0);
+  reach_.clear(), touched_.clear();  // of an earlier problem
 }
 
 void AssignmentSolver::clearReach() {

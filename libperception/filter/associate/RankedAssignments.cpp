@@ -10,6 +10,7 @@ namespace perception {
 namespace {
 
 constexpr int kNothing = RankedAssignment::kNothing;
+constexpr int kNone = -1;  // row
 /// Tolerance for rounding errors of the dual variables.
 constexpr double kRounding = 1e-9;
 
@@ -17,7 +18,7 @@ std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 /// The complete problem: columns of tracks first, then one "none" column per row.
 AssignmentNode solveWhole(const AssignmentProblem& problem) {
-  AssignmentSolver solver;
+  thread_local AssignmentSolver solver;  // keeps its memory
   const int n = static_cast<int>(problem.rows.size());
   solver.begin(problem.columns + n);
   for (int r = 0; r < n; ++r) {
@@ -28,24 +29,44 @@ AssignmentNode solveWhole(const AssignmentProblem& problem) {
   return solver.solve();
 }
 
-/// The problem without options that no assignment within the span contains.
-AssignmentProblem pruned(const AssignmentProblem& problem, const AssignmentNode& root,
-                         double span) {
-  AssignmentProblem out;
-  out.columns = problem.columns;
-  out.rows.resize(problem.rows.size());
-  for (std::size_t r = 0; r < problem.rows.size(); ++r) {
-    for (const auto& o : problem.rows[r]) {
-      const double reduced = -o.gain - root.u[r] - root.v[at(o.column)];
-      if (reduced <= span + kRounding) out.rows[r].push_back(o);
+using Option = AssignmentProblem::Option;
+
+/// The options of a row.
+struct RowOptions {
+  const Option *first, *last;
+  const Option* begin() const { return first; }
+  const Option* end() const { return last; }
+};
+
+/// A problem without options that no assignment within a span contains, row after row.
+class PrunedProblem {
+ public:
+  PrunedProblem(const AssignmentProblem& problem, const AssignmentNode& root, double span)
+      : columns(problem.columns) {
+    end_.reserve(problem.rows.size());
+    for (std::size_t r = 0; r < problem.rows.size(); ++r) {
+      for (const Option& o : problem.rows[r]) {
+        const double reduced = -o.gain - root.u[r] - root.v[at(o.column)];
+        if (reduced <= span + kRounding) options_.push_back(o);
+      }
+      end_.push_back(options_.size());
     }
   }
-  return out;
-}
+  std::size_t rows() const { return end_.size(); }
+  RowOptions row(std::size_t r) const {
+    return {options_.data() + (r == 0 ? 0 : end_[r - 1]), options_.data() + end_[r]};
+  }
+
+  int columns;
+
+ private:
+  std::vector<Option> options_;
+  std::vector<std::size_t> end_;  // of each row
+};
 
 /// Rows that compete for columns, directly or through others: by row the first row of its group.
-std::vector<int> groupsOf(const AssignmentProblem& problem) {
-  const std::size_t n = problem.rows.size();
+std::vector<int> groupsOf(const PrunedProblem& problem) {
+  const std::size_t n = problem.rows();
   std::vector<int> parent(n), owner(at(problem.columns), -1);
   std::iota(parent.begin(), parent.end(), 0);
   const auto find = [&](int r) {
@@ -53,7 +74,7 @@ std::vector<int> groupsOf(const AssignmentProblem& problem) {
     return r;
   };
   for (std::size_t r = 0; r < n; ++r) {
-    for (const auto& option : problem.rows[r]) {
+    for (const Option& option : problem.row(r)) {
       int& o = owner[at(option.column)];
       if (o < 0) {
         o = static_cast<int>(r);
@@ -97,18 +118,17 @@ std::vector<AssignmentNode> rankOthers(AssignmentSolver& solver, AssignmentNode 
   return out;
 }
 
-/// The alternatives of several rows that compete: losses and, by row, columns of the problem.
-struct GroupAlternative {
-  double loss;
-  std::vector<int> column;
+/// The alternatives of rows that compete with each other alone.
+struct Alternatives {
+  std::vector<double> losses;  // ascending
+  std::vector<int> columns;    // [alternative][row], of the problem
 };
 
-std::vector<GroupAlternative> rankGroup(const AssignmentProblem& problem,
-                                        const AssignmentNode& whole, const std::vector<int>& rows,
-                                        std::size_t k, double span) {
+Alternatives rankGroup(const PrunedProblem& problem, const AssignmentNode& whole,
+                       const std::vector<int>& rows, std::size_t k, double span) {
   std::vector<int> columns;
   for (const int r : rows)
-    for (const auto& option : problem.rows[at(r)]) columns.push_back(option.column);
+    for (const Option& option : problem.row(at(r))) columns.push_back(option.column);
   std::sort(columns.begin(), columns.end());
   columns.erase(std::unique(columns.begin(), columns.end()), columns.end());
   const int tracks = static_cast<int>(columns.size()), n = static_cast<int>(rows.size());
@@ -117,14 +137,14 @@ std::vector<GroupAlternative> rankGroup(const AssignmentProblem& problem,
     return static_cast<int>(std::lower_bound(columns.begin(), columns.end(), column) -
                             columns.begin());
   };
-  AssignmentSolver solver;
+  thread_local AssignmentSolver solver;  // keeps its memory
   solver.begin(tracks + n);
   AssignmentNode root;
   root.v.resize(at(tracks + n));
   for (int c = 0; c < tracks; ++c) root.v[at(c)] = whole.v[at(columns[at(c)])];
   for (int i = 0; i < n; ++i) {
     const int row = rows[at(i)];
-    for (const auto& o : problem.rows[at(row)]) {
+    for (const Option& o : problem.row(at(row))) {
       solver.addOption(own(o.column, i), -o.gain);
       if (whole.column[at(row)] == o.column) root.cost -= o.gain;
     }
@@ -135,28 +155,30 @@ std::vector<GroupAlternative> rankGroup(const AssignmentProblem& problem,
     root.v[at(tracks + i)] = whole.v[at(problem.columns + row)];
   }
   const double least = root.cost;
-  std::vector<GroupAlternative> out;
+  Alternatives out;
   for (const auto& node : rankOthers(solver, std::move(root), k, span)) {
-    out.push_back({node.cost - least, {}});
-    for (const int c : node.column)
-      out.back().column.push_back(c < tracks ? columns[at(c)] : kNothing);
+    out.losses.push_back(node.cost - least);
+    for (const int c : node.column) out.columns.push_back(c < tracks ? columns[at(c)] : kNothing);
   }
   return out;
 }
 
-/// The alternatives of a row that shares no option with other rows.
-std::vector<GroupAlternative> rankAlone(const std::vector<AssignmentProblem::Option>& options,
-                                        int best, std::size_t k, double span) {
+/// The alternatives of a row that shares no option with other rows; equal ones in their order.
+Alternatives rankAlone(const RowOptions& options, int best, std::size_t k, double span) {
   double gain = 0;
-  for (const auto& o : options)
+  for (const Option& o : options)
     if (o.column == best) gain = o.gain;
-  std::vector<GroupAlternative> out;
-  if (best != kNothing) out.push_back({gain, {kNothing}});
-  for (const auto& o : options)
-    if (o.column != best) out.push_back({gain - o.gain, {o.column}});
-  std::stable_sort(out.begin(), out.end(),
-                   [](const auto& x, const auto& y) { return x.loss < y.loss; });
-  while (!out.empty() && (out.back().loss > span || out.size() >= k)) out.pop_back();
+  Alternatives out;
+  const auto add = [&out, k, span](int column, double loss) {
+    if (loss > span) return;
+    const auto place = std::upper_bound(out.losses.begin(), out.losses.end(), loss);
+    out.columns.insert(out.columns.begin() + (place - out.losses.begin()), column);
+    out.losses.insert(place, loss);
+    if (out.losses.size() >= k) out.losses.pop_back(), out.columns.pop_back();
+  };
+  if (best != kNothing) add(kNothing, gain);
+  for (const Option& o : options)
+    if (o.column != best) add(o.column, gain - o.gain);
   return out;
 }
 
@@ -180,31 +202,39 @@ std::vector<RankedAssignment> AssignmentRanking::rank(std::size_t k, double span
   const std::size_t n = problem_.rows.size();
   if (n == 1) {
     std::vector<RankedAssignment> out{best_};
-    for (auto& a : rankAlone(problem_.rows[0], best_.column[0], k, span))
-      out.push_back({std::move(a.column), best_.log_weight - a.loss});
+    const auto& row = problem_.rows[0];
+    const auto found = rankAlone({row.data(), row.data() + row.size()}, best_.column[0], k, span);
+    for (std::size_t a = 0; a < found.losses.size(); ++a)
+      out.push_back({{found.columns[a]}, best_.log_weight - found.losses[a]});
     return out;
   }
-  const AssignmentProblem problem = pruned(problem_, root_, span);
+  const PrunedProblem problem(problem_, root_, span);
   const std::vector<int> group_of = groupsOf(problem);
-  std::vector<std::vector<int>> members(n);  // of groups, by first row
-  for (std::size_t r = 0; r < n; ++r) members[at(group_of[r])].push_back(static_cast<int>(r));
+  std::vector<int> next(n, kNone), last(n);  // row of a row's group, last one of a group so far
+  for (std::size_t r = 0; r < n; ++r) {
+    const std::size_t group = at(group_of[r]);
+    if (group != r) next[at(last[group])] = static_cast<int>(r);
+    last[group] = static_cast<int>(r);
+  }
 
   struct Group {
-    int row;  // its first
-    std::vector<GroupAlternative> alternatives;
+    std::vector<int> rows;
+    Alternatives alternatives;
   };
   std::vector<Group> groups;
   RankedSums sums(k);
   for (std::size_t r = 0; r < n; ++r) {
-    if (members[r].empty()) continue;
-    const bool alone = members[r].size() == 1;
-    auto found = alone ? rankAlone(problem.rows[r], best_.column[r], k, span)
-                       : rankGroup(problem, root_, members[r], k, span);
-    if (found.empty()) continue;
-    std::vector<double> losses;
-    for (const auto& a : found) losses.push_back(a.loss);
+    if (at(group_of[r]) != r) continue;
+    Group group;
+    for (int row = static_cast<int>(r); row != kNone; row = next[at(row)])
+      group.rows.push_back(row);
+    group.alternatives = group.rows.size() == 1
+                             ? rankAlone(problem.row(r), best_.column[r], k, span)
+                             : rankGroup(problem, root_, group.rows, k, span);
+    const std::vector<double>& losses = group.alternatives.losses;
+    if (losses.empty()) continue;
     sums.join(static_cast<std::uint32_t>(groups.size()), losses.data(), losses.size(), span);
-    groups.push_back({static_cast<int>(r), std::move(found)});
+    groups.push_back(std::move(group));
   }
 
   std::vector<RankedAssignment> out;
@@ -213,8 +243,8 @@ std::vector<RankedAssignment> AssignmentRanking::rank(std::size_t k, double span
     out.push_back(best_);
     out.back().log_weight -= sum.loss;
     sums.forEachChange(sum, [&](std::uint32_t g, std::uint32_t alternative) {
-      const auto& columns = groups[g].alternatives[alternative].column;
-      const auto& rows = members[at(groups[g].row)];
+      const std::vector<int>& rows = groups[g].rows;
+      const int* columns = &groups[g].alternatives.columns[alternative * rows.size()];
       for (std::size_t i = 0; i < rows.size(); ++i) out.back().column[at(rows[i])] = columns[i];
     });
   }

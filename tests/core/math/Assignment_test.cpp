@@ -53,6 +53,47 @@ TEST(Assignment, HasTheLeastCostOfAllAssignments) {
   }
 }
 
+TEST(AssignmentSolver, SolvesASmallerProblemAfterALargerOne) {
+  AssignmentSolver reused;
+  for (const int size : {9, 3, 6, 1}) {
+    AssignmentSolver fresh;
+    for (AssignmentSolver* solver : {&reused, &fresh}) {
+      solver->begin(size + 1);
+      for (int r = 0; r < size; ++r) {
+        for (int c = 0; c <= size; ++c) solver->addOption(c, (3 * r + 5 * c + size) % 7);
+        solver->endRow();
+      }
+    }
+    const AssignmentNode one = reused.solve(), other = fresh.solve();
+    EXPECT_EQ(one.cost, other.cost);
+    EXPECT_EQ(one.column, other.column);
+    AssignmentNode next, expected;
+    ASSERT_TRUE(fresh.solveChild(other, 0, 1e3, expected));
+    ASSERT_TRUE(reused.solveChild(one, 0, 1e3, next));
+    EXPECT_EQ(next.cost, expected.cost);
+    EXPECT_EQ(next.column, expected.column);
+  }
+}
+
+TEST(AssignmentSolver, RanksASmallerProblemAfterALargerOneWasNotSolved) {
+  AssignmentSolver solver;
+  const auto build = [](AssignmentSolver& s, int size) {
+    s.begin(size + 1);
+    for (int r = 0; r < size; ++r) {
+      for (int c = 0; c <= size; ++c) s.addOption(c, r == c ? 0 : 1);
+      s.endRow();
+    }
+  };
+  for (const int size : {8, 2}) {
+    AssignmentSolver fresh;
+    build(fresh, size), build(solver, size);
+    const AssignmentNode best = fresh.solve();
+    AssignmentNode child;
+    ASSERT_TRUE(solver.solveChild(best, 0, 10, child));
+    EXPECT_EQ(child.cost, 1);
+  }
+}
+
 TEST(Assignment, OfNothingIsEmpty) {
   EXPECT_TRUE(optimalAssignment(Eigen::MatrixXd(0, 3)).empty());
   EXPECT_EQ(optimalAssignment(Eigen::MatrixXd(2, 0)), (std::vector<int>{-1, -1}));
