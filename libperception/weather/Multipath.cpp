@@ -136,8 +136,10 @@ std::vector<std::uint32_t> findMirrorImages(const SensorFrame& frame,
   std::vector<Mirrored> below;
   findHeights(height, cloud->x.data(), cloud->y.data(), cloud->z.data(), cloud->size(),
               heights.data());
-  for (std::size_t i = 0; i < cloud->size(); ++i) {
-    if (!(heights[i] < -depth)) continue;  // NaN, too
+  const auto lies_below = [lowest = -depth](float v) { return v < lowest; };  // not NaN
+  for (auto at = heights.begin();
+       (at = std::find_if(at, heights.end(), lies_below)) != heights.end(); ++at) {
+    const auto i = static_cast<std::size_t>(at - heights.begin());
     const float flat2 = cloud->x[i] * cloud->x[i] + cloud->y[i] * cloud->y[i];
     if (!(flat2 < far2) || heights[i] > -depth - grade * std::sqrt(flat2)) continue;
     // The road is flat enough for its plane's normal to be z.
