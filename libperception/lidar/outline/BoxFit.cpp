@@ -90,14 +90,22 @@ void findTwo(const FittedPoints& points, const float* cosines, const float* sine
 }
 #endif
 
-/// Of two directions [rad].
-std::array<double, 2> closenessOf(const FittedPoints& points, const std::array<double, 2>& yaw,
+/// Directions k * step [rad], k up to and with `steps`, by their cosines and sines.
+struct Turns {
+  explicit Turns(std::size_t steps = 0, double step = 0) : cosine(steps + 1), sine(steps + 1) {
+    for (std::size_t k = 0; k <= steps; ++k) set(k, static_cast<double>(k) * step);
+  }
+  void set(std::size_t k, double yaw) {
+    cosine[k] = static_cast<float>(std::cos(yaw)), sine[k] = static_cast<float>(std::sin(yaw));
+  }
+  std::vector<float> cosine, sine;
+};
+
+/// Of two directions, from one on.
+std::array<double, 2> closenessOf(const FittedPoints& points, const Turns& turns, std::size_t first,
                                   const BoxParams& params) {
-  std::array<float, 2> cosine, sine, closeness;
-  for (std::size_t k = 0; k < 2; ++k)
-    cosine[k] = static_cast<float>(std::cos(yaw[k])),
-    sine[k] = static_cast<float>(std::sin(yaw[k]));
-  findTwo(points, cosine.data(), sine.data(), static_cast<float>(params.min_distance),
+  std::array<float, 2> closeness;
+  findTwo(points, &turns.cosine[first], &turns.sine[first], static_cast<float>(params.min_distance),
           closeness.data());
   return {static_cast<double>(closeness[0]), static_cast<double>(closeness[1])};
 }
@@ -112,9 +120,10 @@ Direction bestDirection(const std::vector<Vector2>& places, const BoxParams& par
   const int steps = std::max(2, static_cast<int>(std::lround(kPi / 2 / params.step)));
   const double step = kPi / 2 / steps;
   std::vector<double> score(static_cast<std::size_t>(steps) + 1);  // they come by two
+  thread_local Turns quarter, finer_ones(1);  // the first the same for all clusters
+  if (quarter.cosine.size() != score.size()) quarter = Turns(score.size() - 1, step);
   for (std::size_t k = 0; k < static_cast<std::size_t>(steps); k += 2) {
-    const auto at = static_cast<double>(k);
-    const auto two = closenessOf(points, {at * step, (at + 1) * step}, params);
+    const auto two = closenessOf(points, quarter, k, params);
     score[k] = two[0], score[k + 1] = two[1];
   }
   score.resize(static_cast<std::size_t>(steps));
@@ -126,7 +135,8 @@ Direction bestDirection(const std::vector<Vector2>& places, const BoxParams& par
   }
   double yaw = static_cast<double>(best) * step, high = score[best];
   for (const double finer : {step / 2, step / 4, step / 8}) {
-    const auto [left, right] = closenessOf(points, {yaw + finer, yaw - finer}, params);
+    finer_ones.set(0, yaw + finer), finer_ones.set(1, yaw - finer);
+    const auto [left, right] = closenessOf(points, finer_ones, 0, params);
     if (left > high && left >= right) {
       yaw += finer, high = left;
     } else if (right > high) {
