@@ -31,6 +31,8 @@ using Data = decltype(SensorFrame::data);
 /// Scales the intensities of an MRPT cloud to [0, 1]. They are given in [0, 1] or as integers of
 /// one or two bytes; the largest value of the cloud decides.
 void scaleIntensity(std::vector<float>& intensity) {
+  const auto fine = [](float value) { return value >= 0 && value <= 1; };
+  if (std::all_of(intensity.begin(), intensity.end(), fine)) return;
   float highest = 0;
   for (float& value : intensity) {
     if (!std::isfinite(value) || value < 0) value = 0;
@@ -62,15 +64,18 @@ bool arraysAgree(const LidarCloud& c) {
          fits(c.time_offset) && fits(c.echo) && fits(c.pulse_width) && fits(c.label);
 }
 
+Data cleaned(LidarCloud cloud, DecodeCounts& counts) {
+  scaleIntensity(cloud.intensity);
+  dropBadPoints(cloud, counts);
+  return cloud;
+}
+
 std::optional<Data> decode(const CObservationLidarScan& scan, DecodeCounts& counts) {
   if (!arraysAgree(scan.cloud)) {
     ++counts.rejected;
     return {};
   }
-  LidarCloud cloud = scan.cloud;
-  scaleIntensity(cloud.intensity);
-  dropBadPoints(cloud, counts);
-  return cloud;
+  return cleaned(scan.cloud, counts);
 }
 
 std::optional<Data> decode(const mrpt::obs::CObservationPointCloud& observation,
@@ -93,12 +98,6 @@ std::optional<Data> decode(const mrpt::obs::CObservationPointCloud& observation,
       cloud.intensity[i] = with_intensity->getPointIntensity_fast(i);
     scaleIntensity(cloud.intensity);
   }
-  dropBadPoints(cloud, counts);
-  return cloud;
-}
-
-Data cleaned(LidarCloud cloud, DecodeCounts& counts) {
-  scaleIntensity(cloud.intensity);
   dropBadPoints(cloud, counts);
   return cloud;
 }
@@ -231,8 +230,13 @@ void dropBadPoints(LidarCloud& cloud, DecodeCounts& counts) {
   // A return at the largest range may be rounded beyond it, as its coordinates are floats.
   const double limit = static_cast<double>(cloud.max_range) * (1 + 1e-6);
   const double most = cloud.max_range > 0 ? limit * limit : std::numeric_limits<double>::max();
+  // By floats, with more room than these round, nearly all points are surely in range.
+  const auto surely = static_cast<float>(std::min(most, 1e30) * (1 - 1e-5));
+  const float *px = cloud.x.data(), *py = cloud.y.data(), *pz = cloud.z.data();
   for (std::size_t i = 0; i < cloud.size(); ++i) {
-    const double x = cloud.x[i], y = cloud.y[i], z = cloud.z[i];
+    const float about2 = px[i] * px[i] + py[i] * py[i] + pz[i] * pz[i];
+    if (about2 > 1e-6F && about2 < surely) continue;
+    const double x = px[i], y = py[i], z = pz[i];
     const double range2 = x * x + y * y + z * z;
     if (range2 > 0 && range2 <= most) continue;
     bad.push_back(i);

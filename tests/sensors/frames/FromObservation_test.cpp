@@ -88,6 +88,20 @@ TEST(FrameFromObservation, BadPointsAreDroppedAndCountedAndTheRestIsUnchanged) {
   EXPECT_EQ(cloud.label, good->cloud.label);
 }
 
+TEST(FrameFromObservation, ABadPointAnywhereAmongManyIsDropped) {
+  for (const float z : {kNan, 0.0F, 120.1F, 1e-30F}) {
+    for (std::size_t at = 0; at < 100; at += 7) {
+      auto scan = fullScan(100);
+      scan->cloud.x[at] = scan->cloud.y[at] = 0, scan->cloud.z[at] = z;
+      DecodeCounts counts;
+      const auto frame = frameFromObservation(*scan, &counts);
+      ASSERT_TRUE(frame);
+      EXPECT_EQ(counts.dropped(), z == 1e-30F ? 0U : 1U) << z << " " << at;
+      EXPECT_EQ(std::get<LidarCloud>(frame->data).size(), 100 - counts.dropped());
+    }
+  }
+}
+
 TEST(FrameFromObservation, EmptyAndAllBadCloudsAreFramesWithoutPoints) {
   auto scan = fullScan(3);
   scan->cloud.x.assign(3, kNan);
