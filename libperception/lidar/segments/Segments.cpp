@@ -159,7 +159,7 @@ class SegmentFinder {
     constexpr double kNear = 25;  // [m] farther off, one row may be all of a thing (assumed)
     const std::uint32_t one = part.front();
     if (!directions_ || std::hypot(x_[one], y_[one]) > kNear) return false;
-    const float first = directions_->azimuth[part.front()];
+    const float first = directions_->azimuth[one];
     const auto turn = [&](std::uint32_t i) {
       return wrapAngle(static_cast<double>(directions_->azimuth[i] - first));
     };
