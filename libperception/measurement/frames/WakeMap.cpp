@@ -38,13 +38,17 @@ void WakeMap::advance(Stamp now) {
 }
 
 void WakeMap::mark(const VehicleFootprint& v) {
-  const double moved = std::max({kPresent * v.speed, v.advanced, v.came});
-  const double reach = v.half_length + moved + halfWidth(v, kLife);
-  const int last_x = cellOf(v.center.x() + reach), last_y = cellOf(v.center.y() + reach);
-  for (int y = cellOf(v.center.y() - reach); y <= last_y; ++y)
-    for (int x = cellOf(v.center.x() - reach); x <= last_x; ++x)
-      reached_[static_cast<std::size_t>(y & (kCells - 1))] |= std::uint64_t{1}
-                                                              << (x & (kCells - 1));
+  const auto around = [this](const Vector2& place, double reach) {
+    const int last_x = cellOf(place.x() + reach), last_y = cellOf(place.y() + reach);
+    for (int y = cellOf(place.y() - reach); y <= last_y; ++y)
+      for (int x = cellOf(place.x() - reach); x <= last_x; ++x)
+        reached_[static_cast<std::size_t>(y & (kCells - 1))] |= std::uint64_t{1}
+                                                                << (x & (kCells - 1));
+  };
+  const double width = halfWidth(v, kLife);
+  around(v.center, v.half_length + std::max(kPresent * v.speed, v.advanced) + width);
+  for (double behind = 0; behind < v.came; behind += kCell)
+    around(v.center - (v.half_length + behind + kCell / 2) * v.along, kCell / 2 + width);
 }
 
 std::optional<double> WakeMap::age(const Vector2& place, Stamp now) const {
