@@ -13,9 +13,9 @@ bool PhantomCauses::any() const {
 
 CausesHere PhantomCauses::at(const Vector2& place, Stamp now) const {
   CausesHere here = {weather, clouds != nullptr ? clouds->at(place) : 0};
-  if (wakes == nullptr || !wakes->mayHaveLeft(place, now)) return here;
-  here.came = kWake;
+  if (wakes == nullptr) return here;
   here.wake = wakes->hasLeft(place, now) ? kWake : 0;
+  here.came = here.wake > 0 || wakes->cameBy(place, now) ? kWake : 0;
   return here;
 }
 

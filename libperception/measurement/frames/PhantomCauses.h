@@ -14,7 +14,7 @@ struct CausesHere {
   double weather = 0;  ///< the air is not clear, everywhere
   double cloud = 0;    ///< the lidar sees a cloud there
   double wake = 0;     ///< a vehicle has just left the place
-  double came = 0;     ///< the same, or it must have come that way before it was first seen
+  double came = 0;     ///< the same, or it must have come by before it was first seen
   double likelier() const { return std::max({weather, cloud, came}); }
   /// Whether likely a cloud hangs there that is no weather, whose returns may lie as close together
   /// as a wall's.

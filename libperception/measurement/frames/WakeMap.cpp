@@ -33,39 +33,39 @@ void WakeMap::advance(Stamp now) {
   const std::size_t before = vehicles_.size();
   while (!vehicles_.empty() && now - vehicles_.front().stamp > kLife) vehicles_.pop_front();
   if (vehicles_.size() == before) return;
-  reached_.fill(0);
+  reached_.fill(0), came_by_.fill(0);
   for (const VehicleFootprint& v : vehicles_) mark(v);
 }
 
+void WakeMap::markAround(const Vector2& place, double reach, Cells& cells) {
+  const int last_x = cellOf(place.x() + reach), last_y = cellOf(place.y() + reach);
+  for (int y = cellOf(place.y() - reach); y <= last_y; ++y)
+    for (int x = cellOf(place.x() - reach); x <= last_x; ++x)
+      cells[static_cast<std::size_t>(y & (kCells - 1))] |= std::uint64_t{1} << (x & (kCells - 1));
+}
+
+bool WakeMap::isMarked(const Vector2& place, const Cells& cells) {
+  const std::uint64_t row = cells[static_cast<std::size_t>(cellOf(place.y()) & (kCells - 1))];
+  return (row >> (cellOf(place.x()) & (kCells - 1)) & 1) != 0;
+}
+
 void WakeMap::mark(const VehicleFootprint& v) {
-  const auto around = [this](const Vector2& place, double reach) {
-    const int last_x = cellOf(place.x() + reach), last_y = cellOf(place.y() + reach);
-    for (int y = cellOf(place.y() - reach); y <= last_y; ++y)
-      for (int x = cellOf(place.x() - reach); x <= last_x; ++x)
-        reached_[static_cast<std::size_t>(y & (kCells - 1))] |= std::uint64_t{1}
-                                                                << (x & (kCells - 1));
-  };
   const double width = halfWidth(v, kLife);
-  around(v.center, v.half_length + std::max(kPresent * v.speed, v.advanced) + width);
+  markAround(v.center, v.half_length + std::max(kPresent * v.speed, v.advanced) + width, reached_);
   for (double behind = 0; behind < v.came; behind += kCell)
-    around(v.center - (v.half_length + behind + kCell / 2) * v.along, kCell / 2 + width);
+    markAround(v.center - (v.half_length + behind + kCell / 2) * v.along, kCell / 2 + width,
+               came_by_);
 }
 
 std::optional<double> WakeMap::age(const Vector2& place, Stamp now) const {
-  return sinceLeft(place, now, false);
-}
-
-std::optional<double> WakeMap::sinceLeft(const Vector2& place, Stamp now, bool came) const {
-  const std::uint64_t row = reached_[static_cast<std::size_t>(cellOf(place.y()) & (kCells - 1))];
-  if ((row >> (cellOf(place.x()) & (kCells - 1)) & 1) == 0) return std::nullopt;
+  if (!isMarked(place, reached_)) return std::nullopt;
   for (auto v = vehicles_.rbegin(); v != vehicles_.rend(); ++v) {  // the last vehicle counts
     const double age = now - v->stamp;
     if (age > kLife) break;
     const double moved = age <= kPresent ? age * v->speed : 0;
     const Vector2 d = place - v->center - moved * v->along;
     const double ahead = d.dot(v->along), behind = -v->half_length - ahead;  // [m] of the rear
-    const double way = came ? std::max(v->came, v->advanced) : v->advanced;
-    const bool swept = age > kPresent && behind > 0 && behind <= way;
+    const bool swept = age > kPresent && behind > 0 && behind <= v->advanced;
     if (std::abs(ahead) > v->half_length && !swept) continue;
     if (std::abs(d.x() * v->along.y() - d.y() * v->along.x()) <= halfWidth(*v, age))
       return swept ? age + behind / v->speed : age;
@@ -74,13 +74,21 @@ std::optional<double> WakeMap::sinceLeft(const Vector2& place, Stamp now, bool c
 }
 
 bool WakeMap::hasLeft(const Vector2& place, Stamp now) const {
-  const auto since = sinceLeft(place, now, false);
+  const auto since = age(place, now);
   return since && *since > kPresent;
 }
 
-bool WakeMap::mayHaveLeft(const Vector2& place, Stamp now) const {
-  const auto since = sinceLeft(place, now, true);
-  return since && *since > kPresent;
+bool WakeMap::cameBy(const Vector2& place, Stamp now) const {
+  if (!isMarked(place, came_by_) || age(place, now)) return false;
+  return std::any_of(vehicles_.begin(), vehicles_.end(), [&](const VehicleFootprint& v) {
+    if (v.came <= 0) return false;
+    const double age = now - v.stamp;
+    if (age <= kPresent || age > kLife) return false;
+    const Vector2 d = place - v.center;
+    const double behind = -v.half_length - d.dot(v.along);  // [m] of the rear
+    return behind > 0 && behind <= v.came &&
+           std::abs(d.x() * v.along.y() - d.y() * v.along.x()) <= halfWidth(v, age);
+  });
 }
 
 double WakeMap::area(Stamp now) const {

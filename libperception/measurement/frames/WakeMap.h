@@ -36,8 +36,9 @@ class WakeMap {
   std::optional<double> age(const Vector2& place, Stamp now) const;
   /// Whether a vehicle was at the place [m, world] and is there no more.
   bool hasLeft(const Vector2& place, Stamp now) const;
-  /// The same, or it must have come that way before it was first seen.
-  bool mayHaveLeft(const Vector2& place, Stamp now) const;
+  /// Whether a vehicle must have come by the place [m, world] before it was first seen, and none was
+  /// seen there since.
+  bool cameBy(const Vector2& place, Stamp now) const;
   /// [m^2] of all wakes; where two overlap, of both.
   double area(Stamp now) const;
 
@@ -49,14 +50,17 @@ class WakeMap {
   static double detection(Modality modality, double age);
 
  private:
-  /// [s] since a vehicle left the place; `came`: the way that it came counts.
-  std::optional<double> sinceLeft(const Vector2& place, Stamp now, bool came) const;
+  static constexpr int kCells = 64;                 ///< along each axis, after which they repeat
+  using Cells = std::array<std::uint64_t, kCells>;  ///< a row a word
+
   /// Marks the cells that the vehicle's wake may reach in its life.
   void mark(const VehicleFootprint& vehicle);
+  static void markAround(const Vector2& place, double reach, Cells& cells);
+  static bool isMarked(const Vector2& place, const Cells& cells);
 
-  static constexpr int kCells = 64;  ///< along each axis, after which they repeat
   std::deque<VehicleFootprint> vehicles_;
-  std::array<std::uint64_t, kCells> reached_{};  ///< cells, a row a word: elsewhere is no wake
+  Cells reached_{};  ///< elsewhere is no wake
+  Cells came_by_{};  ///< elsewhere no vehicle has come by
 };
 
 }  // namespace perception

@@ -49,19 +49,23 @@ TEST(WakeMap, AVehicleFasterThanItsLengthPerScanLeavesNoHole) {
   }
 }
 
-TEST(WakeMap, AVehicleMayHaveLeftTheWayThatItCame) {
+TEST(WakeMap, AVehicleCameByBehindItsFirstFootprint) {
   VehicleFootprint car;
   car.speed = 20, car.came = 20;
   car.half_length = 2.25, car.half_width = 0.9;
   WakeMap wakes;
   wakes.add(car);
   const Stamp now = Stamp::fromSeconds(0.5);
-  EXPECT_TRUE(wakes.mayHaveLeft({-10, 0}, now));
+  EXPECT_TRUE(wakes.cameBy({-10, 0}, now));
   EXPECT_FALSE(wakes.hasLeft({-10, 0}, now)) << "nothing was seen there";
-  EXPECT_FALSE(wakes.mayHaveLeft({-23, 0}, now)) << "farther back than that";
-  EXPECT_FALSE(wakes.mayHaveLeft({-10, 3}, now)) << "beside";
-  EXPECT_FALSE(wakes.mayHaveLeft({10, 0}, now)) << "ahead";
+  EXPECT_FALSE(wakes.cameBy({-23, 0}, now)) << "farther back than that";
+  EXPECT_FALSE(wakes.cameBy({-10, 3}, now)) << "beside";
+  EXPECT_FALSE(wakes.cameBy({10, 0}, now)) << "ahead";
   EXPECT_FALSE(wakes.age({-10, 0}, now)) << "no wake of phantoms that were counted";
+  VehicleFootprint next = car;
+  next.stamp = now, next.center = {-10, 0}, next.came = 0;
+  wakes.add(next);
+  EXPECT_FALSE(wakes.cameBy({-10, 0}, now)) << "another vehicle is there now";
 }
 
 TEST(WakeMap, IsTheSameAnywhereInTheWorld) {
