@@ -36,8 +36,8 @@ class WakeMap {
   std::optional<double> age(const Vector2& place, Stamp now) const;
   /// Whether a vehicle was at the place [m, world] and is there no more.
   bool hasLeft(const Vector2& place, Stamp now) const;
-  /// Whether a vehicle must have come by the place [m, world] before it was first seen, and none was
-  /// seen there since.
+  /// Whether a vehicle must have come by the place [m, world] before it was first seen, and none
+  /// was seen there since.
   bool cameBy(const Vector2& place, Stamp now) const;
   /// [m^2] of all wakes; where two overlap, of both.
   double area(Stamp now) const;
