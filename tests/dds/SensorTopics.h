@@ -145,8 +145,11 @@ class SensorTopics {
     ros::Detection3DArray boxes;
     boxes.header = header_;
     for (int i = 0; i < 3; ++i)
-      boxes.detections.push_back(
-          {header_, {car}, ros::messageOf(makePose(15.0 + i, 3.0 * i, 0.8, 0.1 * k)), {4, 2, 1.6}});
+      boxes.detections.push_back({header_,
+                                  {car},
+                                  ros::messageOf(makePose(15.0 + i, 3.0 * i, 0.8, 0.1 * k)),
+                                  {4, 2, 1.6},
+                                  {}});
     put("/boxes", "vision_msgs/Detection3DArray", boxes);
     ImageBoxes image;
     image.header = header_;
