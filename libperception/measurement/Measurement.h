@@ -36,7 +36,7 @@ struct PartialBox {
   bool length_complete = false, width_complete = false;  ///< both ends of that side were seen
   double length_sigma = 0, width_sigma = 0;  ///< [m] of complete sides; 0: the filter's side_sigma
   Vector2 center = Vector2::Zero();          ///< [m] of the box, world
-  /// That yaw points to the front of a car and its opposite to the rear, by the shape of the car;
+  /// Log-odds that yaw points to the front of a car and not to its rear, by the shape of the car;
   /// 0: unknown.
   double front_log_odds = 0;
 };

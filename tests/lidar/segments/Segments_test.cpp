@@ -182,6 +182,30 @@ TEST(Segments, ARowOfBeamsOnAWallIsNothingOfItsOwn) {
       << "without the sensor's place the beams are not known";
 }
 
+/// A wall around the scanner at 15 m, far too long for a whole, in columns 0.15 m apart, and as
+/// many columns more a quarter of a meter beside its end.
+Obstacles wallAndColumns(int columns) {
+  constexpr double kRange = 15, kStep = 0.01;
+  Obstacles o;
+  const auto add = [&o](double azimuth) {
+    for (double height = 0.4; height < 1.7; height += 0.2)
+      o.add(kRange * std::cos(azimuth), kRange * std::sin(azimuth), height);
+  };
+  for (int k = 0; k <= 240; ++k) add(-1.2 + kStep * k);
+  for (int k = 0; k < columns; ++k) add(1.2 + 0.25 / kRange + kStep * k);
+  return o;
+}
+
+TEST(Segments, UpToThreeColumnsOfALongSurfaceAreNothingOfTheirOwn) {
+  const auto found = [](int columns) {
+    const Obstacles o = wallAndColumns(columns);
+    return findSegments(o.x, o.y, o.height, 8, 20, o.trust, {}, Vector3(0, 0, 1)).size();
+  };
+  EXPECT_EQ(found(2), 0u);
+  EXPECT_EQ(found(3), 0u);
+  EXPECT_EQ(found(6), 1u) << "as wide as a person";
+}
+
 TEST(Segments, ReturnsCountByTheirTrust) {
   Obstacles person;
   person.addWall(10, 0, 10, 0.5);
