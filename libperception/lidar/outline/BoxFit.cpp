@@ -246,9 +246,11 @@ std::optional<PartialBox> fitBox(const std::vector<Vector2>& points, const Vecto
   sides.length_complete = sideComplete(r, sensor_a, sensor_b, below ? left_open : right_open,
                                        below ? right_open : left_open, params.grazing);
   const bool behind = sensor_a < center_a;  // looking towards +a, left is +b
+  // A rear whose direction errs by its deviation seems to show a short side beside it.
   const Rectangle across{r.yaw, r.b0, r.b1, r.a0, r.a1};
-  sides.width_complete = sideComplete(across, sensor_b, sensor_a, behind ? right_open : left_open,
-                                      behind ? left_open : right_open, params.grazing);
+  sides.width_complete =
+      sideComplete(across, sensor_b, sensor_a, behind ? right_open : left_open,
+                   behind ? left_open : right_open, params.grazing + sides.yaw_sigma);
   return sides;
 }
 

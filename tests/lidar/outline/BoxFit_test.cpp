@@ -103,6 +103,19 @@ TEST(BoxFit, ACarSeenFromBehindShowsItsWidthAlone) {
   EXPECT_NEAR(std::abs(degrees(sides->yaw)), 90, 2);
 }
 
+// A rear of 1.8 m tells its direction to 13 degrees only: turned by a cloud beside it, it seems to
+// show a short side. A long side tells its direction better.
+TEST(BoxFit, AShortSideIsCompleteOnlyWhereTheDirectionIsSureEnough) {
+  for (const double longer : {1.8, 4.4}) {
+    const auto sides =
+        fitBox(facingSides({20, 0}, radians(119), longer, 0.6), Vector2::Zero(), true, true, {});
+    ASSERT_TRUE(sides);
+    EXPECT_NEAR(degrees(wrapAxis(sides->yaw - radians(119))), 0, 3);
+    EXPECT_TRUE(sides->length_complete);
+    EXPECT_EQ(sides->width_complete, longer > 4);
+  }
+}
+
 TEST(BoxFit, ARoundGroupHasNoDirection) {
   std::vector<Vector2> points;
   Rng rng(RngKey{5, 0, 0, 12});
