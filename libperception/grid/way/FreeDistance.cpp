@@ -13,11 +13,12 @@ namespace {
 constexpr double kStraight = 1e-6;  // [1/m] below it the arc is a line
 constexpr double kTogether = 0.5;   // [m] along the arc: returns of one surface
 constexpr double kGap = 1;          // [m] largest unknown gap between beams
+constexpr double kChild = 1;        // [m] height: what stands as high on the way seen is hit
 
-// A column is known when any of a few heights of it is.
+// A column is known when any of two heights of it is, below which a child does not stand.
 bool isKnown(const Corridor& corridor, double s,
              const std::function<double(const Vector3&)>& log_odds_at) {
-  constexpr double kHeights[] = {0.5, 0.9, 1.3, 1.7};  // [m] up to a lidar on the roof
+  constexpr double kHeights[] = {0.5, kChild - 0.1};  // [m] cells of 0.2 m
   const Vector2 p = onArc(corridor, {s, 0});
   const double road = corridor.roadAt(s);
   return std::any_of(std::begin(kHeights), std::end(kHeights), [&](double z) {
@@ -118,9 +119,10 @@ FreeDistance freeDistance(const Corridor& corridor, const std::vector<GridCell>&
 double seenByBeams(const Corridor& corridor, double seen, const Vector3& from,
                    const std::vector<const GridPoints*>& ends, double height) {
   constexpr double kStep = 1;   // [m] along the arc: a bin is seen by one beam
-  constexpr double kLow = 0.3;  // [m] a beam as low shows what stands on the road
+  constexpr double kLow = 0.1;  // [m] above the road, whose height errs
   const auto bins = static_cast<std::size_t>(std::max(corridor.max - seen, 0.0) / kStep);
   if (bins == 0) return seen;
+  const double highest = std::min(height, kChild);
   struct Bin {
     double x, y, range2;  // [m], [m^2] of its middle, from the sensor
     double road;          // [m] height
@@ -156,7 +158,7 @@ double seenByBeams(const Corridor& corridor, double seen, const Vector3& from,
         if (bin.seen || bin.range2 > range2) continue;
         if (std::abs(beam.x() * bin.y - beam.y() * bin.x) > side) continue;
         const double z = sensor.z() + beam.z() * std::sqrt(bin.range2 / range2) - bin.road;
-        bin.seen = z > kLow && z < height;
+        bin.seen = z > kLow && z < highest;
       }
     }
   }

@@ -92,6 +92,14 @@ TEST(FreeDistance, SeenEndsWhereTheLidarHasNotLooked) {
   EXPECT_NEAR(freeDistance({}, {}, 0.2, known_to_20).seen, 20, 0.21);
 }
 
+TEST(FreeDistance, WhatIsKnownAboveAChildAloneIsNotSeen) {
+  for (const double known_from : {0.4, 0.8, 1.1}) {
+    const auto known = [&](const Vector3& p) { return p.z() > known_from ? -1.0 : 0.0; };
+    const double seen = freeDistance({}, {}, 0.2, known).seen;
+    EXPECT_EQ(seen > Corridor{}.max - 1, known_from < 1) << known_from;
+  }
+}
+
 TEST(FreeDistance, SmallGapsBetweenBeamsDoNotEndWhatWasSeen) {
   const auto striped = [](const Vector3& p) { return std::fmod(p.x(), 0.9) < 0.3 ? -1.0 : 0.0; };
   EXPECT_GT(freeDistance({}, {}, 0.1, striped).seen, Corridor{}.max - 1);
@@ -130,6 +138,15 @@ TEST(SeenByBeams, IsAsFarAsABeamReachesBetweenTheRoadAndTheVehiclesHeight) {
   EXPECT_NEAR(seenByBeams(corridor, 40, {0, 0, 1.7}, {&ends}, 1.9), 120, 1.5);
   EXPECT_LT(seenByBeams(corridor, 40, {0, 0, 1.7}, {&ends}, 0.8), 120)
       << "a low vehicle must see lower";
+}
+
+// The level beam meets a wall, the lower one the road after 10 m.
+TEST(SeenByBeams, ALidarOfTwoBeamsSeesNoFurtherThanAChildWouldBeHit) {
+  Corridor corridor;
+  corridor.max = 60;
+  GridPoints ends;
+  ends.emplace_back(10, 0, 0), ends.emplace_back(50, 0, 1.7);
+  EXPECT_NEAR(seenByBeams(corridor, 5, {0, 0, 1.7}, {&ends}, 1.9), 9, 1);
 }
 
 TEST(SeenByBeams, BeamsBesideTheCorridorSayNothing) {
