@@ -8,6 +8,7 @@ namespace perception {
 namespace {
 
 constexpr double kSeamOverlap = 0.5;  // least overlap of the rows of two halves
+constexpr double kCovered = 0.5;      // least share of its rows in which a box is hidden
 
 bool isSpherical(const CameraModel& camera) {
   return camera.projection == CameraModel::Projection::kEquirectangular;
@@ -163,6 +164,21 @@ std::vector<std::size_t> joinSeam(const CameraModel& camera, double border,
     }
   }
   return index;
+}
+
+HiddenEdges hiddenEdges(const ObjectDetection::ImageBox& box,
+                        const std::vector<ObjectDetection::ImageBox>& others, double tolerance) {
+  HiddenEdges hidden;
+  for (const auto& other : others) {
+    const double rows = std::min(box.y2, other.y2) - std::max(box.y1, other.y1);
+    if (other.y2 <= box.y2 + tolerance || rows < kCovered * (box.y2 - box.y1)) continue;
+    const auto covers = [&](double column) {
+      return column > other.x1 - tolerance && column < other.x2 + tolerance;
+    };
+    hidden.left |= covers(box.x1);
+    hidden.right |= covers(box.x2);
+  }
+  return hidden;
 }
 
 std::optional<BoxOnGround> boxOnGround(const ObjectDetection::ImageBox& box,

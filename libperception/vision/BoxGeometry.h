@@ -39,7 +39,7 @@ struct BoxGeometryParams {
 /// Geometry of an object on the ground by its image box, in the camera's level frame (x forward).
 struct BoxOnGround {
   double left = 0, right = 0;  ///< [rad] bearings of its edges, counter-clockwise off forward
-  bool left_seen = false, right_seen = false;  ///< false: cut off by the image's border
+  bool left_seen = false, right_seen = false;  ///< false: cut off by the image's border, or hidden
   double left_sigma = 0, right_sigma = 0;      ///< [rad]
   std::optional<double> range;  ///< [m] on the ground, to the object's nearest point; empty when
                                 ///< the lower edge is cut off or above the horizon
@@ -61,6 +61,16 @@ inline double middleBearing(double left, double right) {
 /// former index.
 std::vector<std::size_t> joinSeam(const CameraModel& camera, double border,
                                   std::vector<ObjectDetection>& objects);
+
+/// Edges of an image box at which a nearer object hides the rest.
+struct HiddenEdges {
+  bool left = false, right = false;
+};
+
+/// The edges of `box` that lie in one of `others`, up to `tolerance` [px], which covers at least
+/// half of its rows and ends lower in the image: it stands nearer on the ground (method.md 4.2).
+HiddenEdges hiddenEdges(const ObjectDetection::ImageBox& box,
+                        const std::vector<ObjectDetection::ImageBox>& others, double tolerance);
 
 /// The level frame of a camera (T_ego_level): x along the optical axis, z up, origin at the optical
 /// center.

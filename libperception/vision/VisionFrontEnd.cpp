@@ -85,6 +85,9 @@ void DetectorParams::visit(ParamVisitor& v) {
   }
   v.real("occluder_score", occluder_score, {-1e9, 1e9}, "",
          "least score of a box that occludes objects behind it");
+  v.boolean("amodal", amodal,
+            "boxes also hold what a nearer object hides, as labels of KITTI do; otherwise an edge "
+            "in a nearer box is not seen");
   v.boolean("base", base, "the lower edge also measures the base height of the object");
   v.real("score_slope", score_slope, {0, 1e3}, "1/score",
          "log-odds of an object per unit of score; 0: no evidence");
@@ -129,26 +132,42 @@ VisionFrontEnd::VisionFrontEnd(DetectorParams detector, BoxGeometryParams geomet
   }
 }
 
-std::optional<Measurement> VisionFrontEnd::measure(const ObjectDetection& object,
-                                                   const SensorFrame& frame,
-                                                   const CameraModel& camera,
-                                                   const Pose3& T_ego_camera,
-                                                   const SensorState& state) const {
+double VisionFrontEnd::logScoreRatio(double score, int label) const {
+  double offset = detector_.score_offset;
+  for (const auto& [name, value] : detector_.label_offsets) {
+    if (model_->detection_model().labelIndex(name) == label) offset = value;
+  }
+  return std::clamp(detector_.score_slope * (score - offset), -detector_.score_limit,
+                    detector_.score_limit);
+}
+
+std::vector<ObjectDetection::ImageBox> VisionFrontEnd::probableBoxes(
+    const std::vector<ObjectDetection>& objects) const {
+  std::vector<ObjectDetection::ImageBox> boxes;
+  for (const ObjectDetection& object : objects) {
+    const auto label = label_of_.find(object.label);
+    if (!object.image_box || label == label_of_.end() || label->second < 0) continue;
+    if (logScoreRatio(object.score, label->second) >= 0) boxes.push_back(*object.image_box);
+  }
+  return boxes;
+}
+
+std::optional<Measurement> VisionFrontEnd::measure(
+    const ObjectDetection& object, const SensorFrame& frame, const CameraModel& camera,
+    const Pose3& T_ego_camera, const SensorState& state, const HiddenEdges& hidden) const {
   const auto label = label_of_.find(object.label);
   if (!object.image_box || label == label_of_.end() || label->second < 0) return std::nullopt;
-  const auto box =
+  auto box =
       boxOnGround(*object.image_box, camera, T_ego_camera, frame.ground, frame.ego.uncertainty,
                   geometry_, height_prior_[static_cast<std::size_t>(label->second)]);
-  if (!box || (!box->left_seen && !box->right_seen && !box->range)) return std::nullopt;
+  if (!box) return std::nullopt;
+  box->left_seen &= !hidden.left;
+  box->right_seen &= !hidden.right;
+  if (!box->left_seen && !box->right_seen && !box->range) return std::nullopt;
 
   Measurement m;
   m.label = label->second;
-  double offset = detector_.score_offset;
-  for (const auto& [name, value] : detector_.label_offsets) {
-    if (model_->detection_model().labelIndex(name) == m.label) offset = value;
-  }
-  m.log_score_ratio = std::clamp(detector_.score_slope * (object.score - offset),
-                                 -detector_.score_limit, detector_.score_limit);
+  m.log_score_ratio = logScoreRatio(object.score, m.label);
   if (detector_.score_by_class) addClassEvidence(m);
   m.z = Vector3(box->left, box->right, box->range.value_or(0));
   m.seen = static_cast<AxisMask>((box->left_seen ? 1 << FootprintModel::kLeft : 0) |
@@ -230,10 +249,14 @@ void VisionFrontEnd::fill(const SensorFrame& frame, MeasurementScan& scan) const
   const Pose3 T_ego_camera = poseOfCamera(frame);
   std::vector<ObjectDetection> objects = detections->objects;
   const auto index = joinSeam(detections->camera, geometry_.border, objects);
+  const auto standing = probableBoxes(objects);
   for (std::size_t i = 0; i < objects.size(); ++i) {
     const ObjectDetection& object = objects[i];
     if (object.score < detector_.min_score) continue;
-    auto m = measure(object, frame, detections->camera, T_ego_camera, scan.state);
+    HiddenEdges hidden;
+    if (!detector_.amodal && object.image_box)
+      hidden = hiddenEdges(*object.image_box, standing, geometry_.edge_sigma);
+    auto m = measure(object, frame, detections->camera, T_ego_camera, scan.state, hidden);
     if (!m) {
       ++scan.dropped;
       continue;

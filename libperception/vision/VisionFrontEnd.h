@@ -34,6 +34,9 @@ struct DetectorParams {
   /// [m] height of the objects of a label, mean and spread: a second source of range (method.md
   /// (15)).
   std::vector<std::pair<std::string, double>> height_priors, height_prior_sigmas;
+  /// Boxes also hold what a nearer object hides. Detectors that have learned from boxes about
+  /// visible parts (COCO) end there, and such an edge says nothing of the object's.
+  bool amodal = false;
   bool base = false;  ///< the lower edge also measures the base height of the object
   /// Least score of a box that occludes objects behind it (see the filter's occluded_detection and
   /// occlusion_tolerance). Assumed: none, until scores were counted.
@@ -68,8 +71,13 @@ class VisionFrontEnd final : public FrontEnd {
  private:
   std::optional<Measurement> measure(const ObjectDetection& object, const SensorFrame& frame,
                                      const CameraModel& camera, const Pose3& T_ego_camera,
-                                     const SensorState& state) const;
+                                     const SensorState& state, const HiddenEdges& hidden) const;
 
+  /// Of the score, between its limits.
+  double logScoreRatio(double score, int label) const;
+  /// Boxes that are no less likely an object than clutter.
+  std::vector<ObjectDetection::ImageBox> probableBoxes(
+      const std::vector<ObjectDetection>& objects) const;
   /// Label and score as evidence of the class (method.md 8.8).
   void addClassEvidence(Measurement& m) const;
   std::shared_ptr<const OcclusionMap> occlusion(const MeasurementScan& scan,

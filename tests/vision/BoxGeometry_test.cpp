@@ -211,6 +211,41 @@ TEST(VisionFrontEnd, EdgesThatRepeatCountAsOftenAsTheyAreNew) {
   EXPECT_NEAR(share, 0.2 / 1.8, 1e-9);  // a correlation of 0.8 from image to image
 }
 
+/// Axes that are seen of a car at 20 m whose left part stands behind one at 12 m, by a detector
+/// with these keys.
+AxisMask axesBehindACar(const std::string& detector, double nearer_score) {
+  Config config = Config::fromText(
+      "[class.car]\nmotion = wheeled\n[class.pedestrian]\nmotion = constant-velocity\n"
+      "[sensor.A]\nkind = boxes\nmodality = C\n[sensor.A.detector]\nscore_slope = 2\n"
+      "score_offset = 0.5\n" +
+          detector,
+      "a.ini");
+  const auto front_end = makeVisionFrontEnd(config, "A", readClassTable(config));
+  EXPECT_NO_THROW(config.finish());
+  SensorFrame frame;
+  frame.sensor = "A";
+  frame.T_ego_sensor = cameraPose(1.65);
+  ObjectDetections detections;
+  detections.camera = kCamera;
+  ObjectDetection behind, nearer;
+  behind.label = nearer.label = "Car";
+  behind.score = 0.9, nearer.score = nearer_score;
+  behind.image_box = boardBox(20, -1.1, -2, 1.5, frame.T_ego_sensor);
+  nearer.image_box = boardBox(12, 0.9, -0.7, 1.5, frame.T_ego_sensor);
+  detections.objects = {behind, nearer};
+  frame.data = detections;
+  const auto scan = front_end->extract(frame);
+  EXPECT_EQ(scan.measurements.at(1).seen, FootprintModel::kAll) << "nothing stands before it";
+  return scan.measurements.at(0).seen;
+}
+
+TEST(VisionFrontEnd, AnEdgeAtANearerBoxIsThatOfTheNearerObject) {
+  constexpr int kWithoutLeft = 1 << FootprintModel::kRight | 1 << FootprintModel::kRange;
+  EXPECT_EQ(axesBehindACar("", 0.9), kWithoutLeft);
+  EXPECT_EQ(axesBehindACar("amodal = true\n", 0.9), FootprintModel::kAll);
+  EXPECT_EQ(axesBehindACar("", 0.3), FootprintModel::kAll) << "the nearer box is likelier clutter";
+}
+
 TEST(VisionFrontEnd, MapsNamesToLabelsAndDropsTheRest) {
   Config config = Config::fromText(
       "[class.car]\nmotion = wheeled\n[class.pedestrian]\nmotion = "

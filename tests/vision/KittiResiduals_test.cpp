@@ -7,11 +7,13 @@
 namespace perception {
 namespace {
 
-/// The front end as ini/kitti.ini sets it up: the defaults.
+/// The front end as ini/kitti.ini sets it up: the defaults, of a detector whose boxes hold hidden
+/// parts, too.
 std::unique_ptr<FrontEnd> makeFrontEnd() {
   Config config = Config::fromText(
       "[class.car]\nmotion = wheeled\n[class.pedestrian]\nmotion = constant-velocity\n"
-      "[sensor.rrc]\nkind = boxes\nmodality = C\n[sensor.rrc.detector]\nmin_score = 0.5\n",
+      "[sensor.rrc]\nkind = boxes\nmodality = C\n[sensor.rrc.detector]\nmin_score = 0.5\n"
+      "amodal = true\n",
       "kitti.ini");
   const ClassTable classes = readClassTable(config);
   return makeVisionFrontEnd(config, "rrc", classes);
