@@ -17,10 +17,16 @@ constexpr double kSideSigma =
 constexpr double kBoxSigma = 0.2;  // [m] of a seen box's faces
 constexpr double kSureYaw = 0.35;  // [rad] boxes of less certain direction give no heading
 constexpr int kAngles = 8;         // of the average over unknown headings
+/// Shares of objects of any width, so that no class is excluded by size alone: as range times
+/// angle, and across the line of sight, where two objects may be one cluster (method.md 5.14).
+constexpr double kAnyWidth = 0.001, kAnyBoxWidth = 0.05;
 
 bool seen(const Measurement& m, FootprintModel::Axis axis) { return m.seen >> axis & 1; }
 
 Vector2 sensorPosition(const SensorState& s) { return s.T_world_sensor.translation().head<2>(); }
+
+/// [rad] between two edges, counter-clockwise.
+double middle(double left, double right) { return right + 0.5 * wrapAngle(left - right); }
 
 double rangeOf(const Measurement& m, const SensorState& s) {
   return seen(m, FootprintModel::kRange)
@@ -46,6 +52,36 @@ double widthDensity(const ObjectClass& c, double width, double noise) {
     sum += normalDensity(width - mean, spread + noise);
   }
   return sum / kAngles;
+}
+
+/// The same with a share of any width.
+double widthDensity(const ObjectClass& c, double width, double noise, double share_of_any) {
+  return (1 - share_of_any) * widthDensity(c, width, noise) + share_of_any / kWidestClutter;
+}
+
+/// [m] of the box of a measurement that has both edges, across the line of sight.
+double boxAcross(const Measurement& m, const SensorState& s) {
+  const double left = m.z[FootprintModel::kLeft], right = m.z[FootprintModel::kRight];
+  const double angle = yawOf(s.T_world_sensor) + middle(left, right) - m.sides->yaw;
+  return m.sides->length * std::abs(std::sin(angle)) + m.sides->width * std::abs(std::cos(angle));
+}
+
+/// Factor of a class in the classes of its shape, whose density together stays that of `width`, by
+/// the width `across` of the box. Range times angle is too little for what goes on away from the
+/// sensor: a truck beside it is 3 m wide.
+double gainInShape(const ClassTable& classes, ClassId c, double width, double across,
+                   double noise) {
+  const ObjectClass& own = classes[c];
+  double by_width = 0, by_box = 0, priors = 0;
+  for (const ObjectClass& other : classes.classes) {
+    if (other.shape != own.shape) continue;
+    priors += other.prior;
+    by_width += other.prior * widthDensity(other, width, noise, kAnyWidth);
+    by_box += other.prior * widthDensity(other, across, noise, kAnyBoxWidth);
+  }
+  if (priors <= own.prior) return 1;
+  return widthDensity(own, across, noise, kAnyBoxWidth) / by_box * by_width /
+         widthDensity(own, width, noise, kAnyWidth);
 }
 
 /// Log density per unit of the axes seen of a position that is uniform over the field of view,
@@ -183,8 +219,8 @@ double FootprintModel::logBirthDensity(const Measurement& m, ClassId c,
     const double range = rangeOf(m, sensor);
     const double width = range * wrapAngle(m.z[kLeft] - m.z[kRight]);
     const double noise = range * range * (m.R(kLeft, kLeft) + m.R(kRight, kRight));
-    // No class is excluded by size alone: a share of 0.001 has any width.
-    per_meter = 0.999 * widthDensity(classes_[c], width, noise) + 0.001 / kWidestClutter;
+    per_meter = widthDensity(classes_[c], width, noise, kAnyWidth);
+    if (m.sides) per_meter *= gainInShape(classes_, c, width, boxAcross(m, sensor), noise);
   }
   return std::log(detection_model_.params().births_per_scan) +
          logUniform(m, detection_model_, sensor, per_meter);
@@ -214,8 +250,8 @@ std::optional<BirthState> FootprintModel::birth(const Measurement& m, ClassId c,
   const double forward = yawOf(sensor.T_world_sensor);
   const bool both = seen(m, kLeft) && seen(m, kRight);
   const Vector2 d = m.position - origin;
-  const double bearing = both ? forward + m.z[kRight] + 0.5 * wrapAngle(m.z[kLeft] - m.z[kRight])
-                              : std::atan2(d.y(), d.x());
+  const double bearing =
+      both ? forward + middle(m.z[kLeft], m.z[kRight]) : std::atan2(d.y(), d.x());
   const Extent& e = birth.extent;
   const double radius = 0.25 * (e.length + e.width);
   const double rho = seen(m, kRange) ? m.z[kRange] + radius : d.norm();

@@ -200,6 +200,39 @@ TEST(FootprintModel, BirthDensityTellsAPersonFromAVehicleByWidth) {
   EXPECT_LT(ratio(4.0), -2);
 }
 
+TEST(FootprintModel, TheBoxOfATruckBesideTheSensorTellsItFromACar) {
+  ClassTable classes = footprintClasses();
+  ObjectClass truck = classes.classes[0];
+  truck.name = "truck";
+  truck.length = 11, truck.width = 2.55, truck.length_sigma = 1.65, truck.width_sigma = 0.38;
+  classes.classes.push_back(truck);
+  for (const std::size_t vehicle : {0, 2}) classes.classes[vehicle].shape = ObjectShape::kVehicle;
+  const FootprintModel f(classes, DetectionModel({}, {{}, {}, {}}, {"car_sized", "person_sized"}));
+  const SensorState s = sensorAt(0, 0, 0);
+  const Kinematics beside = rectangle(6, -3.7, 0);
+  const Extent size{9.8, 2.5, 0, 0};
+  AxisPrediction p;
+  f.predict(&beside, &size, 1, s, &p);
+  Measurement m;
+  m.seen = FootprintModel::kAll;
+  m.z = p.h;
+  m.R = Vector3(0.003, 0.003, 0.06).asDiagonal();
+  const auto log_odds = [&](ClassId a, ClassId b) {
+    return f.logBirthDensity(m, a, s) - f.logBirthDensity(m, b, s);
+  };
+  const auto vehicles = [&] {
+    return std::exp(f.logBirthDensity(m, 0, s)) + std::exp(f.logBirthDensity(m, 2, s));
+  };
+  EXPECT_LT(log_odds(2, 0), 0) << "its angle at the range of its nearest point is that of a car";
+  const double person = f.logBirthDensity(m, 1, s), all = vehicles();
+  PartialBox box;
+  box.length = 9.8, box.width = 2.5, box.center = Vector2(6, -3.7);
+  m.sides = box;
+  EXPECT_GT(log_odds(2, 0), 2);
+  EXPECT_EQ(f.logBirthDensity(m, 1, s), person) << "no other class has its shape";
+  EXPECT_NEAR(vehicles(), all, 1e-9 * all) << "shapes are told apart as before";
+}
+
 TEST(FootprintModel, ARearViewStandsAcrossAndTheCarLiesBehindIt) {
   const FootprintModel f = model();
   Measurement m = measurementOf(0.045, -0.045, 20, 7);
