@@ -41,7 +41,7 @@ Pipeline::Pipeline(PipelineSetup setup, EventLog& events, RunTiming& timing)
   if (setup_.grid.enabled) safety_.emplace(setup_.grid, setup_.stop, setup_.weather.trust);
 }
 
-void Pipeline::add(const mrpt::obs::CObservation& observation) {
+void Pipeline::add(const mrpt::obs::CObservation& observation, mrpt::obs::CObservation* own) {
   const auto stamp = toStamp(observation.timestamp);
   if (stamp) addTime(*stamp);
   if (const auto number = frameNumber(observation)) {
@@ -49,7 +49,7 @@ void Pipeline::add(const mrpt::obs::CObservation& observation) {
   } else if (isImage(observation)) {
     return;  // no front end reads images: their boxes come as detections
   } else if (isSensorData(observation)) {
-    addFrame(observation);
+    addFrame(observation, own);
   } else {
     ego_.add(observation);
   }
@@ -92,13 +92,14 @@ void Pipeline::startEpoch(Stamp stamp, const std::string& why) {
   last_stamp_ = stamp;
 }
 
-void Pipeline::addFrame(const mrpt::obs::CObservation& observation) {
+void Pipeline::addFrame(const mrpt::obs::CObservation& observation, mrpt::obs::CObservation* own) {
   const auto sensor = setup_.sensorOf(observation.sensorLabel);
   if (!sensor) return watch_.countIgnored(observation.sensorLabel);
   if (!setup_.sensors[*sensor].used()) return;
   const auto scope = timing_.stage("decode");
   DecodeCounts counts;
-  auto frame = frameFromObservation(observation, &counts);
+  auto frame = own != nullptr ? frameFromObservation(std::move(*own), counts)
+                              : frameFromObservation(observation, &counts);
   watch_.countDroppedPoints(*sensor, counts.dropped());
   if (!frame) {
     watch_.addDroppedFrame(*sensor, toStamp(observation.timestamp), event_kind::kDroppedFrame,

@@ -62,7 +62,9 @@ class Pipeline {
   /// Whether a scene is due that did not come yet, since the grid lags.
   bool isBehind() const { return late_.has_value(); }
 
-  void add(const mrpt::obs::CObservation& observation);
+  void add(const mrpt::obs::CObservation& observation) { add(observation, nullptr); }
+  /// One that is not needed any more: its points are moved.
+  void add(mrpt::obs::CObservation&& observation) { add(observation, &observation); }
   std::optional<Scene> next(bool flush = false);
   /// Reports events known at the end of the log: sensors without frames, labels without a section,
   /// what was learned of detectors, what was taken as phantoms.
@@ -93,7 +95,9 @@ class Pipeline {
   void addTime(Stamp stamp);
   void passGap(Stamp stamp, double gap);
   void startEpoch(Stamp stamp, const std::string& why);
-  void addFrame(const mrpt::obs::CObservation& observation);
+  /// `own`: the observation, if it is not needed any more; else null.
+  void add(const mrpt::obs::CObservation& observation, mrpt::obs::CObservation* own);
+  void addFrame(const mrpt::obs::CObservation& observation, mrpt::obs::CObservation* own);
   bool processNext(bool flush);
   void addToOdometry(const std::vector<SensorFrame>& frames);
   void processFrames(std::vector<SensorFrame> frames);

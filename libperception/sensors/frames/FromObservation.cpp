@@ -96,10 +96,8 @@ std::optional<Data> decode(const mrpt::obs::CObservationPointCloud& observation,
     cloud.intensity.resize(cloud.size());
     for (std::size_t i = 0; i < cloud.size(); ++i)
       cloud.intensity[i] = with_intensity->getPointIntensity_fast(i);
-    scaleIntensity(cloud.intensity);
   }
-  dropBadPoints(cloud, counts);
-  return cloud;
+  return cleaned(std::move(cloud), counts);
 }
 
 std::optional<Data> decode(const mrpt::obs::CObservationVelodyneScan& scan, DecodeCounts& counts) {
@@ -245,15 +243,9 @@ void dropBadPoints(LidarCloud& cloud, DecodeCounts& counts) {
                               : counts.no_range);
   }
   if (bad.empty()) return;
-  filterArray(cloud.x, bad);
-  filterArray(cloud.y, bad);
-  filterArray(cloud.z, bad);
-  filterArray(cloud.intensity, bad);
-  filterArray(cloud.ring, bad);
-  filterArray(cloud.time_offset, bad);
-  filterArray(cloud.echo, bad);
-  filterArray(cloud.pulse_width, bad);
-  filterArray(cloud.label, bad);
+  const auto filter = [&bad](auto&... arrays) { (filterArray(arrays, bad), ...); };
+  filter(cloud.x, cloud.y, cloud.z, cloud.intensity, cloud.ring, cloud.time_offset, cloud.echo,
+         cloud.pulse_width, cloud.label);
 }
 
 bool isSensorData(const CObservation& observation) { return decoderFor(observation) != nullptr; }
@@ -282,6 +274,15 @@ std::optional<SensorFrame> frameFromObservation(const CObservation& observation,
   observation.getSensorPose(pose);
   frame.T_ego_sensor = toPose3(pose);
   frame.data = std::move(*data);
+  return frame;
+}
+
+std::optional<SensorFrame> frameFromObservation(CObservation&& observation, DecodeCounts& counts) {
+  LidarCloud cloud;
+  auto* scan = dynamic_cast<CObservationLidarScan*>(&observation);
+  if (scan != nullptr && arraysAgree(scan->cloud)) std::swap(cloud, scan->cloud);
+  auto frame = frameFromObservation(std::as_const(observation), &counts);
+  if (frame && scan != nullptr) frame->data = cleaned(std::move(cloud), counts);
   return frame;
 }
 

@@ -38,6 +38,10 @@ std::optional<SensorFrame> frameFromObservation(const mrpt::obs::CObservation& o
                                                 DecodeCounts* counts = nullptr,
                                                 const std::string& images = "");
 
+/// The same of an observation that is not needed any more: a lidar scan's points are moved.
+std::optional<SensorFrame> frameFromObservation(mrpt::obs::CObservation&& observation,
+                                                DecodeCounts& counts);
+
 /// True for classes that frameFromObservation() decodes.
 bool isSensorData(const mrpt::obs::CObservation& observation);
 /// True for images, which most front ends do not read.

@@ -38,7 +38,7 @@ std::shared_ptr<mrpt::obs::CObservation> ReadAhead::next() {
   }
   ended_ = !at_.observation;
   if (at_.fault) std::rethrow_exception(at_.fault);
-  return at_.observation;
+  return std::move(at_.observation);
 }
 
 ReadAhead::Taken ReadAhead::take() {

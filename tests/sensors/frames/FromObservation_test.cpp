@@ -48,6 +48,21 @@ TEST(FrameFromObservation, LidarScanIsTheInverseOfToObservation) {
   EXPECT_EQ(cloud.ring, scan->cloud.ring);
 }
 
+TEST(FrameFromObservation, ALidarScanThatIsNotNeededGivesItsPointsAway) {
+  const auto scan = fullScan(100, kStart);
+  const auto kept = frameFromObservation(*scan);
+  DecodeCounts counts;
+  const auto moved = frameFromObservation(std::move(*scan), counts);
+  ASSERT_TRUE(kept && moved);
+  EXPECT_EQ(moved->stamp, kept->stamp);
+  EXPECT_EQ(counts.points, 100U);
+  const auto &one = std::get<LidarCloud>(kept->data), &other = std::get<LidarCloud>(moved->data);
+  EXPECT_EQ(one.x, other.x);
+  EXPECT_EQ(one.intensity, other.intensity);
+  EXPECT_EQ(one.max_range, other.max_range);
+  EXPECT_TRUE(scan->cloud.x.empty());
+}
+
 TEST(FrameFromObservation, BadPointsAreDroppedAndCountedAndTheRestIsUnchanged) {
   const auto good = fullScan(50);
   auto bad = fullScan(50);
