@@ -2,6 +2,7 @@
 
 #include "libperception/lidar/ground/GroundPlane.h"
 #include "libperception/lidar/ground/GroundSurface.h"
+#include "libperception/lidar/ground/SplitGround.h"
 #include "tests/support/SyntheticCloud.h"
 
 namespace perception {
@@ -197,6 +198,21 @@ TEST(GroundSurface, DoesNotSwallowACar) {
   EXPECT_NEAR(surface.heightAt(16, 2.5), 0, 0.1);
   EXPECT_NEAR(surface.heightAt(18, 3), 0, 0.1);
   EXPECT_NEAR(surface.heightAt(24, 4), 0, 0.1);  // in its shadow
+}
+
+TEST(SlabParts, AreThoseOfTheRules) {
+  const SlabRules rules{-0.3F, 0.3F, 0.25F, 2.5F, -1, -0.5F};
+  const std::vector<float> x = {-5, -5, -5, -5, -5, -5, 5, 1, -5}, y = {0, 0, 0, 0, 0, 0, 1, 3, 0},
+                           heights = {-0.3F, 0, 0.25F, 0.28F, 0.3F, 2.5F, 1, 1, -1};
+  SlabParts parts;
+  parts.find(x.data(), y.data(), heights.data(), x.size(), rules);
+  const auto of = [](const SlabParts::Part& part) {
+    return std::vector<std::uint32_t>(part.index.begin(),
+                                      part.index.begin() + static_cast<std::ptrdiff_t>(part.count));
+  };
+  EXPECT_EQ(of(parts.obstacles), std::vector<std::uint32_t>({3, 4, 7}));
+  EXPECT_EQ(of(parts.others), std::vector<std::uint32_t>({1, 2, 5}));
+  EXPECT_EQ(of(parts.road), std::vector<std::uint32_t>({1, 2, 3}));
 }
 
 TEST(UsablePoints, DropsBadOwnAndRainyReturns) {

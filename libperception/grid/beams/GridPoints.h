@@ -1,10 +1,10 @@
 #pragma once
 #include <cstddef>
 #include <cstdint>
-#include <vector>
 
 #include "libperception/core/Frames.h"
 #include "libperception/grid/beams/WorldPlaces.h"
+#include "libperception/simd/RawVector.h"
 
 namespace perception {
 
@@ -20,7 +20,7 @@ class GridPoints {
     z_.push_back(static_cast<float>(p.z() - base_.z()));
   }
   /// Appends those `chosen` of a block.
-  void append(const WorldPlaces& places, const std::uint16_t* chosen, std::size_t count) {
+  void append(const WorldPlaces& places, const std::uint32_t* chosen, std::size_t count) {
     std::size_t i = size();
     if (!based_) {  // up to the first finite one
       std::size_t k = 0;
@@ -56,7 +56,7 @@ class GridPoints {
  private:
   Vector3 base_ = Vector3::Zero();
   bool based_ = false;
-  std::vector<float> x_, y_, z_;
+  RawVector<float> x_, y_, z_;
 };
 
 }  // namespace perception

@@ -11,11 +11,12 @@ bool PhantomCauses::any() const {
   return weather > 0 || clouds != nullptr || (wakes != nullptr && !wakes->empty());
 }
 
-CausesHere PhantomCauses::at(const Vector2& place, Stamp now) const {
+CausesHere PhantomCauses::at(const Vector2& place, Stamp now, bool likeliest_alone) const {
   CausesHere here = {weather, clouds != nullptr ? clouds->at(place) : 0};
-  if (wakes == nullptr) return here;
-  here.wake = wakes->hasLeft(place, now) ? kWake : 0;
-  here.came = here.wake > 0 || wakes->cameBy(place, now) ? kWake : 0;
+  if (wakes == nullptr || (likeliest_alone && weather >= kWake)) return here;
+  const WakeMap::Past past = wakes->pastOf(place, now);
+  here.wake = past.has_left ? kWake : 0;
+  here.came = past.has_left || past.came_by ? kWake : 0;
   return here;
 }
 

@@ -30,8 +30,8 @@ struct PhantomCauses {
 
   /// False: every return counts in full.
   bool any() const;
-  /// At a place [m, world].
-  CausesHere at(const Vector2& place, Stamp now) const;
+  /// At a place [m, world]. `likeliest_alone`: only its likelier() is needed.
+  CausesHere at(const Vector2& place, Stamp now, bool likeliest_alone = false) const;
 };
 
 }  // namespace perception

@@ -73,14 +73,10 @@ std::optional<double> WakeMap::age(const Vector2& place, Stamp now) const {
   return std::nullopt;
 }
 
-bool WakeMap::hasLeft(const Vector2& place, Stamp now) const {
-  const auto since = age(place, now);
-  return since && *since > kPresent;
-}
-
-bool WakeMap::cameBy(const Vector2& place, Stamp now) const {
-  if (!isMarked(place, came_by_) || age(place, now)) return false;
-  return std::any_of(vehicles_.begin(), vehicles_.end(), [&](const VehicleFootprint& v) {
+WakeMap::Past WakeMap::pastOf(const Vector2& place, Stamp now) const {
+  if (const auto since = age(place, now)) return {*since > kPresent, false};
+  if (!isMarked(place, came_by_)) return {};
+  const bool came = std::any_of(vehicles_.begin(), vehicles_.end(), [&](const VehicleFootprint& v) {
     if (v.came <= 0) return false;
     const double age = now - v.stamp;
     if (age <= kPresent || age > kLife) return false;
@@ -89,6 +85,7 @@ bool WakeMap::cameBy(const Vector2& place, Stamp now) const {
     return behind > 0 && behind <= v.came &&
            std::abs(d.x() * v.along.y() - d.y() * v.along.x()) <= halfWidth(v, age);
   });
+  return {false, came};
 }
 
 double WakeMap::area(Stamp now) const {

@@ -34,11 +34,15 @@ class WakeMap {
 
   /// [s] since a vehicle left the place [m, world]; empty: it is in no wake.
   std::optional<double> age(const Vector2& place, Stamp now) const;
-  /// Whether a vehicle was at the place [m, world] and is there no more.
-  bool hasLeft(const Vector2& place, Stamp now) const;
-  /// Whether a vehicle must have come by the place [m, world] before it was first seen, and none
-  /// was seen there since.
-  bool cameBy(const Vector2& place, Stamp now) const;
+  /// What vehicles did at a place.
+  struct Past {
+    bool has_left = false;  ///< one was there and is there no more
+    bool came_by = false;   ///< one must have come by before it was first seen, and none was seen
+                            ///< there since
+  };
+  Past pastOf(const Vector2& place, Stamp now) const;  ///< `place`: [m, world]
+  bool hasLeft(const Vector2& place, Stamp now) const { return pastOf(place, now).has_left; }
+  bool cameBy(const Vector2& place, Stamp now) const { return pastOf(place, now).came_by; }
   /// [m^2] of all wakes; where two overlap, of both.
   double area(Stamp now) const;
 

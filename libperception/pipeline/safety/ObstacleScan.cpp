@@ -6,6 +6,7 @@
 #include <cstdint>
 
 #include "libperception/grid/beams/WorldPlaces.h"
+#include "libperception/lidar/ground/SplitGround.h"
 #include "libperception/weather/SensorVerdict.h"
 
 namespace perception {
@@ -29,6 +30,15 @@ constexpr float kWallInCloud = 0.9F;
 Pose3 groundPose(const Pose3& T_world_ego, const GroundPlane& plane) {
   return T_world_ego * makePose(0, 0, plane.c, 0, -std::atan(plane.a), std::atan(plane.b));
 }
+
+/// The largest float not above a number: floats above it are above the number, and no others.
+float floatBelow(double number) {
+  const auto near = static_cast<float>(number);
+  return static_cast<double>(near) > number
+             ? std::nextafter(near, -std::numeric_limits<float>::infinity())
+             : near;
+}
+float floatAbove(double number) { return -floatBelow(-number); }
 
 /// Weighs the obstacle returns of one scan.
 class Doubter {
@@ -56,11 +66,14 @@ class Doubter {
     const bool alone = shape == PlacedReturns::kNoCluster;
     const float doubt = 1 - (alone ? trust : trust * (1 - shape));
     const bool asks = caused_ && (alone || static_cast<double>(doubt) > kHardly);
-    const CausesHere here = asks ? frame_.causes.at(place, frame_.stamp) : CausesHere{};
-    const double cause = here.likelier();
     const float solid = returns_.solid.empty() ? PlacedReturns::kFewDirections : returns_.solid[i];
+    // Whether it stands in a cloud matters to what may be a surface alone.
+    const bool perhaps_surface = solid >= kPerhapsSurface;
+    const CausesHere here =
+        asks ? frame_.causes.at(place, frame_.stamp, !perhaps_surface) : CausesHere{};
+    const double cause = here.likelier();
     float held = std::min(doubt, static_cast<float>(cause));
-    if (weighted_) held = std::max(held, std::min(doubt, verdictOn(i)));
+    if (weighted_ && held < doubt) held = std::max(held, std::min(doubt, verdictOn(i)));
     const bool in_cloud = here.inCloud();
     const bool wall = !in_cloud && solid >= kWall && trust > 0;
     if (wall) held = 0;
@@ -71,13 +84,13 @@ class Doubter {
     obstacles.dense[hit] = dense < kDoubted ? 0 : dense;
     obstacles.doubted[hit] = doubt >= kDoubted;
     if (!caused_) return;
-    obstacles.surface[hit] =
-        dense < 1 && trust > 0 && solid >= (in_cloud ? kWallInCloud : perhapsSurface(i));
+    obstacles.surface[hit] = perhaps_surface && dense < 1 && trust > 0 &&
+                             solid >= (in_cloud ? kWallInCloud : leastOfSurface(i));
     obstacles.solid[hit] = wall;
   }
 
  private:
-  float perhapsSurface(std::size_t i) const {
+  float leastOfSurface(std::size_t i) const {
     const Vector3 place(returns_.x[i], returns_.y[i], returns_.z[i]);
     const double range = (place - frame_.T_ego_sensor.translation()).norm();
     return range < PlacedReturns::kFlakesWithin ? kPerhapsAmongFlakes : kPerhapsSurface;
@@ -108,34 +121,34 @@ ObstacleScan obstacleScanOf(const SensorFrame& frame, const PlacedReturns& retur
   scan.T_world_ground = groundPose(frame.ego.T_world_ego, frame.ground);
   const auto* cloud = std::get_if<LidarCloud>(&frame.data);
   const Doubter doubter(frame, cloud, returns, trust);
-  scan.clear.reserve(returns.size());
+  scan.hits.reserve(returns.size()), scan.clear.reserve(returns.size());
   const bool backward = isReversing(frame.ego.T_world_ego, frame.ego.velocity, stop);
-  const float travel = backward ? -1 : 1;
   obstacles.road = RoadHeights(backward);
   const double height_max = std::min(returns.height_max, clearance);
+  const SlabRules rules{floatBelow(kMirrored),          floatAbove(kOnRoad),
+                        floatBelow(returns.height_min), floatAbove(height_max),
+                        backward ? -1.0F : 1.0F,        kBehind};
   WorldPlaces places;
-  std::array<std::uint16_t, WorldPlaces::kSize> hits, clear;
-  for (std::size_t first = 0; first < returns.size(); first += WorldPlaces::kSize) {
-    const std::size_t count = std::min(WorldPlaces::kSize, returns.size() - first);
+  SlabParts parts;
+  constexpr std::size_t kBlock = std::min(WorldPlaces::kSize, SlabParts::kSize);
+  for (std::size_t first = 0; first < returns.size(); first += kBlock) {
+    const std::size_t count = std::min(kBlock, returns.size() - first);
     places.place(frame.ego.T_world_ego, &returns.x[first], &returns.y[first], &returns.z[first],
                  count);
-    std::size_t hit_count = 0, clear_count = 0;
-    for (std::size_t k = 0; k < count; ++k) {
-      const std::size_t i = first + k;
-      const auto height = static_cast<double>(returns.height[i]);
-      if (height <= kMirrored || travel * returns.x[i] < kBehind * std::abs(returns.y[i])) continue;
-      const bool hit = height > returns.height_min && height < height_max;
-      hits[hit_count] = clear[clear_count] = static_cast<std::uint16_t>(k);
-      hit_count += hit, clear_count += !hit;
-      if (height < kOnRoad)
-        obstacles.road.add(returns.x[i], returns.y[i], returns.z[i] - returns.height[i]);
+    parts.find(&returns.x[first], &returns.y[first], &returns.height[first], count, rules);
+    for (std::size_t k = 0; k < parts.road.count; ++k) {
+      const std::size_t i = first + parts.road.index[k];
+      obstacles.road.add(returns.x[i], returns.y[i], returns.z[i] - returns.height[i]);
     }
-    scan.hits.append(places, hits.data(), hit_count);
-    scan.clear.append(places, clear.data(), clear_count);
+    scan.clear.append(places, parts.others.index.data(), parts.others.count);
+    const SlabParts::Part& hits = parts.obstacles;
+    scan.hits.append(places, hits.index.data(), hits.count);
     const std::size_t before = obstacles.dense.size();
-    doubter.makeRoom(hit_count, obstacles);
-    for (std::size_t k = 0; k < hit_count; ++k)
-      doubter.weigh(first + hits[k], {places.x[hits[k]], places.y[hits[k]]}, before + k, obstacles);
+    doubter.makeRoom(hits.count, obstacles);
+    for (std::size_t k = 0; k < hits.count; ++k) {
+      const std::uint32_t at = hits.index[k];
+      doubter.weigh(first + at, {places.x[at], places.y[at]}, before + k, obstacles);
+    }
   }
   return obstacles;
 }

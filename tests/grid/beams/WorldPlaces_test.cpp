@@ -32,11 +32,11 @@ TEST(WorldPlaces, ArePointsOfTheGridAsIfAppendedOneByOne) {
   ego.x[0] = std::numeric_limits<float>::quiet_NaN();  // no base
   WorldPlaces places;
   places.place(makePose(812.3, 45.6, 0, 0.7, 0, 0), ego.x.data(), ego.y.data(), ego.z.data(), 4);
-  const std::vector<std::uint16_t> chosen = {0, 1, 3};
+  const std::vector<std::uint32_t> chosen = {0, 1, 3};
   GridPoints together, one_by_one;
   for (int round = 0; round < 2; ++round) {
     together.append(places, chosen.data(), chosen.size());
-    for (const std::uint16_t k : chosen) one_by_one.push_back(places.at(k));
+    for (const std::uint32_t k : chosen) one_by_one.push_back(places.at(k));
   }
   ASSERT_EQ(together.size(), 6U);
   EXPECT_EQ(together.base(), one_by_one.base());
