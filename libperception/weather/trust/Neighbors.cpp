@@ -174,9 +174,10 @@ void NeighborCounter::count(const RangeImage& image, const NeighborRules& rules,
   hidden_.resize(room), kind_.resize(room);
   kind_pixel_.resize(room), kind_range_.resize(room), of_kind_.resize(room);
   for (std::size_t row = image.lowestRow(); row <= image.highestRow(); ++row) {
-    const std::size_t first =
-        row * static_cast<std::size_t>(image.stride()) + RangeImage::kColumnReach;
-    countRow(&image.pixels()[first], image.stride(), image.columns(), rules, &of_pixel_[first]);
+    const std::size_t first = row * static_cast<std::size_t>(image.stride()) +
+                              RangeImage::kColumnReach + image.firstColumn();
+    countRow(&image.pixels()[first], image.stride(), image.lastColumn() + 1 - image.firstColumn(),
+             rules, &of_pixel_[first]);
   }
   const std::size_t hidden = findHidden(image, near), kinds = deduplicateReturns(hidden, near);
   countAll(image.pixels().data(), image.stride(), rules, &kind_pixel_[1], &kind_range_[1],

@@ -24,10 +24,18 @@ struct PixelRules {
   std::int32_t columns, stride;
 };
 
-/// Ranges [m] of `count` points [m] and their pixels, both 0 for invalid points.
-PERCEPTION_WIDEST void findPixels(const float* __restrict x, const float* __restrict y,
+/// The first and the last of some numbers.
+struct Span {
+  std::int32_t first, last;
+};
+
+/// Ranges [m] of `count` points [m] and their pixels, both 0 for invalid points. Returns `columns`,
+/// widened by those of the others.
+PERCEPTION_WIDEST Span findPixels(const float* __restrict x, const float* __restrict y,
                                   const float* __restrict z, std::size_t count, const PixelRules k,
-                                  float* __restrict range, std::uint32_t* __restrict pixels) {
+                                  Span columns, float* __restrict range,
+                                  std::uint32_t* __restrict pixels) {
+  std::int32_t left = columns.first, right = columns.last;
   for (std::size_t i = 0; i < count; ++i) {
     const float flat2 = x[i] * x[i] + y[i] * y[i];
     const float r = std::sqrt(flat2 + z[i] * z[i]);
@@ -43,7 +51,10 @@ PERCEPTION_WIDEST void findPixels(const float* __restrict x, const float* __rest
     const std::int32_t pixel = row * k.stride + column + RangeImage::kColumnReach;
     range[i] = seen != 0 ? r : 0.0F;
     pixels[i] = static_cast<std::uint32_t>(seen != 0 ? pixel : 0);
+    const std::int32_t from = seen != 0 ? column : k.columns, to = seen != 0 ? column : 0;
+    left = from < left ? from : left, right = to > right ? to : right;
   }
+  return {left, right};
 }
 
 /// The first and the last pixel with a return.
@@ -85,17 +96,19 @@ void RangeImage::place(const LidarCloud& cloud, const BlockVisitor& look) {
                          static_cast<std::int32_t>(stride_)};
   const auto stride = static_cast<std::uint32_t>(stride_);
   PixelSpan span{static_cast<std::uint32_t>(rows_ + kRowReach) * stride, 0};
+  Span columns{rules.columns, 0};
   float* image = image_.data();
   for (std::size_t first = 0; first < cloud.size(); first += kBlock) {
     const std::size_t count = std::min(kBlock, cloud.size() - first);
-    findPixels(&cloud.x[first], &cloud.y[first], &cloud.z[first], count, rules, ranges.data(),
-               pixels.data());
+    columns = findPixels(&cloud.x[first], &cloud.y[first], &cloud.z[first], count, rules, columns,
+                         ranges.data(), pixels.data());
     span = widened(pixels.data(), count, span);
     for (std::size_t k = 0; k < count; ++k) image[pixels[k]] = ranges[k];
     if (look) look({first, count, ranges.data(), pixels.data()});
   }
   image[0] = 0;
   lowest_ = span.first / stride, highest_ = span.last / stride;
+  left_ = static_cast<std::size_t>(columns.first), right_ = static_cast<std::size_t>(columns.last);
 }
 
 // Share of pixels with a return that have another in the row above or below.
@@ -125,13 +138,16 @@ double RangeImage::findRow(const LidarCloud& cloud) const {
   return *(std::end(kRows) - 1);
 }
 
-// Rows without returns are zero already.
+// Rows and columns without returns are zero already.
 void RangeImage::wipe() {
   const auto stride = static_cast<std::size_t>(stride_);
   image_.resize((rows_ + 2 * kRowReach) * stride + kSlack);
-  if (highest_ >= lowest_)
-    std::fill_n(image_.begin() + static_cast<std::ptrdiff_t>(lowest_ * stride),
-                (highest_ + 1 - lowest_) * stride, 0.0F);
+  for (std::size_t row = lowest_; row <= highest_; ++row) {
+    float* const line = image_.data() + row * stride;
+    std::fill_n(line, kColumnReach, 0.0F);
+    std::fill(line + kColumnReach + left_, line + kColumnReach + right_ + 1, 0.0F);
+    std::fill_n(line + kColumnReach + columns_, kColumnReach, 0.0F);
+  }
 }
 
 void RangeImage::fill(const LidarCloud& cloud, const BlockVisitor& look) {

@@ -32,13 +32,16 @@ class RangeImage {
   /// returns while it is in the cache.
   void fill(const LidarCloud& cloud, const BlockVisitor& look = {});
 
-  /// [m]; 0: no return. Rows lowestRow() to highestRow() hold all returns; each has columns()
-  /// pixels and a margin at either end. kSlack elements behind the last row may be read, too.
+  /// [m]; 0: no return. Rows lowestRow() to highestRow() hold all returns, in their columns
+  /// firstColumn() to lastColumn(); each has columns() pixels and a margin at either end. kSlack
+  /// elements behind the last row may be read, too.
   const std::vector<float>& pixels() const { return image_; }
   static constexpr std::size_t kSlack = 8;
   std::size_t columns() const { return columns_; }
   std::size_t lowestRow() const { return lowest_; }
   std::size_t highestRow() const { return highest_; }
+  std::size_t firstColumn() const { return left_; }  ///< the margin not counted
+  std::size_t lastColumn() const { return right_; }
   std::ptrdiff_t stride() const { return stride_; }  ///< from a pixel to the row above it
   double rowPitch() const { return row_; }           ///< [rad]
   std::size_t memoryBytes() const;
@@ -56,6 +59,7 @@ class RangeImage {
   float per_radian_ = 0, rows_per_slope_ = 0;
   std::vector<float> image_;
   std::size_t lowest_ = 0, highest_ = 0;  ///< rows with returns, margins not counted
+  std::size_t left_ = 0, right_ = 0;      ///< columns with returns, margins not counted
 };
 
 }  // namespace perception

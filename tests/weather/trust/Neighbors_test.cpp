@@ -78,6 +78,24 @@ TEST(NeighborCounter, CountsAsALiteralLoopDoesAlsoForEchoesThatTheImageDoesNotSh
   EXPECT_GT(hidden, 3000U);
 }
 
+TEST(RangeImage, HoldsNothingOfAScanThatReachedToOtherColumns) {
+  LidarCloud ahead;
+  for (int i = 0; i < 100; ++i) {
+    const float turn = 0.01F * static_cast<float>(i);
+    ahead.x.push_back(9 * std::cos(turn)), ahead.y.push_back(9 * std::sin(turn));
+    ahead.z.push_back(0);
+  }
+  RangeImage image(radians(0.6), radians(0.5)), fresh(radians(0.6), radians(0.5));
+  image.fill(cloudOfEchoes());
+  image.fill(ahead), fresh.fill(ahead);
+  EXPECT_EQ(image.pixels(), fresh.pixels());
+  EXPECT_EQ(image.firstColumn(), fresh.firstColumn());
+  EXPECT_LT(image.lastColumn() - image.firstColumn(), image.columns() / 4);
+  image.fill(LidarCloud()), fresh = RangeImage(radians(0.6), radians(0.5));
+  fresh.fill(LidarCloud());
+  EXPECT_EQ(image.pixels(), fresh.pixels());
+}
+
 TEST(SurroundingCubes, HoldNothingOfTheScanBeforeTheyWereCleared) {
   constexpr float kReach = 20;
   constexpr std::size_t kCount = 300;
