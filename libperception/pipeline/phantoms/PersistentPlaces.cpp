@@ -12,6 +12,11 @@ constexpr std::ptrdiff_t kSeveral = 2;  // returns in a cube (assumed)
 
 struct CubePlace {
   std::int64_t x, y, z;
+  /// That of a key; places repeat after 2^21 cubes.
+  static CubePlace of(std::uint64_t key) {
+    const auto part = [](std::uint64_t v) { return static_cast<std::int64_t>(v & 0x1FFFFFU); };
+    return {part(key >> 42), part(key >> 21), part(key)};
+  }
   std::uint64_t key() const {
     const auto part = [](std::int64_t v) { return static_cast<std::uint64_t>(v) & 0x1FFFFFU; };
     return part(x) << 42 | part(y) << 21 | part(z);
@@ -47,9 +52,13 @@ std::vector<char> PersistentPlaces::add(const std::vector<Vector3>& surfaces) {
   }
   std::vector<char> again(surfaces.size(), 0);
   if (!before_.empty()) {
+    std::vector<char> seen;  // of each cube, whether it was about one of the scan before
+    seen.reserve(now.size());
+    for (const std::uint64_t key : now) seen.push_back(isAbout(before_, CubePlace::of(key)));
     for (std::size_t i = 0; i < surfaces.size(); ++i) {
-      const CubePlace cube = cubeOf(surfaces[i]);
-      again[i] = std::binary_search(now.begin(), now.end(), cube.key()) && isAbout(before_, cube);
+      const std::uint64_t key = cubeOf(surfaces[i]).key();
+      const auto at = std::lower_bound(now.begin(), now.end(), key);
+      again[i] = at != now.end() && *at == key && seen[static_cast<std::size_t>(at - now.begin())];
     }
   }
   before_ = std::move(now);
