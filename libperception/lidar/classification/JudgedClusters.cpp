@@ -92,13 +92,22 @@ void dropFragments(const LidarDetections& found, std::vector<JudgedCluster>& jud
   std::vector<char> fragment(judged.size(), 0);
   for (std::size_t v = 0; v < judged.size(); ++v) {
     if (!isVehicle(judged[v], 0)) continue;
-    const auto box = fitBox(placesOf(judged[v]), sensor, true, true, BoxParams{});
+    const std::vector<Vector2> places = placesOf(judged[v]);
+    double radius2 = 0;
+    for (const Vector2& p : places) radius2 = std::max(radius2, (p - centers[v]).squaredNorm());
+    // The box reaches no farther from their center along either side; most have nothing near.
+    const double reach = std::sqrt(2.0) * (std::sqrt(radius2) + kMargin) + 1e-6;
+    std::vector<std::size_t> near;
+    for (std::size_t i = 0; i < judged.size(); ++i)
+      if (i != v && judged[i].points.size() < judged[v].points.size() &&
+          std::max(judged[i].evidence[0], judged[i].evidence[1]) < kPerson &&
+          (centers[i] - centers[v]).squaredNorm() <= reach * reach)
+        near.push_back(i);
+    if (near.empty()) continue;
+    const auto box = fitBox(places, sensor, true, true, BoxParams{});
     if (!box) continue;
     const Vector2 along(std::cos(box->yaw), std::sin(box->yaw));
-    for (std::size_t i = 0; i < judged.size(); ++i) {
-      if (i == v || judged[i].points.size() >= judged[v].points.size() ||
-          std::max(judged[i].evidence[0], judged[i].evidence[1]) >= kPerson)
-        continue;
+    for (const std::size_t i : near) {
       const Vector2 d = centers[i] - box->center;
       fragment[i] =
           fragment[i] || (std::abs(d.dot(along)) < box->length / 2 + kMargin &&

@@ -9,6 +9,7 @@
 #include "libperception/core/Frames.h"
 #include "libperception/lidar/description/DescriptorParts.h"
 #include "libperception/lidar/outline/EdgeFit.h"
+#include "libperception/simd/Vector8.h"
 
 namespace perception {
 namespace {
@@ -19,6 +20,17 @@ constexpr int kSlices = 5;  // heights of the outline
 constexpr std::size_t kOutlineSample = 200, kSpreadSample = 400, kRoughnessSample = 800;
 
 std::size_t strideOf(std::size_t count, std::size_t sample) { return 1 + (count - 1) / sample; }
+
+/// Least box around points along two axes: how far they reach along each and against it, so that
+/// one comparison of four numbers serves all its sides.
+struct Box {
+  static constexpr float kNone = -1e30f;
+  Float4 ends = all<Float4>(kNone);
+  void add(const Float4& reach) { ends = larger(reach, ends); }
+  float size(std::size_t axis) const {
+    return ends[axis] > kNone ? ends[axis] + ends[axis + 2] : 0;
+  }
+};
 
 /// Sum, products and number of points: their covariance.
 struct Moments {
@@ -156,22 +168,24 @@ void ClusterDescriber::describeOutline(Descriptor& d) const {
   const std::size_t n = x_.size();
   std::vector<float> heights;
   heights.reserve(kSpreadSample);
-  for (std::size_t i = 0; i < n; i += strideOf(n, kSpreadSample)) heights.push_back(h_[i]);
+  const std::size_t stride = strideOf(n, kSpreadSample);
+  for (std::size_t i = 0; i < n; i += stride) heights.push_back(h_[i]);
   const float bottom = quantile(heights, 0.01), top = quantile(heights, 0.99);
   const float height = std::max(top - bottom, 0.05f);
-  Interval u, v;
-  std::array<Interval, kSlices> along, across;
+  Box whole;
+  std::array<Box, kSlices> slices;
   std::array<int, kSlices> count{};
   Interval top_x, top_y;
+  const Float4 of_x = {along_x_, -along_y_, -along_x_, along_y_},
+               of_y = {along_y_, along_x_, -along_y_, -along_x_};
   for (std::size_t i = 0; i < n; ++i) {
-    const float p = x_[i] * along_x_ + y_[i] * along_y_, q = y_[i] * along_x_ - x_[i] * along_y_;
-    u.add(p), v.add(q);
     const auto slice = static_cast<std::size_t>(
         std::clamp(static_cast<int>((h_[i] - bottom) / height * kSlices), 0, kSlices - 1));
-    along[slice].add(p), across[slice].add(q), ++count[slice];
+    slices[slice].add(x_[i] * of_x + y_[i] * of_y), ++count[slice];
     if (h_[i] > top - 0.3f) top_x.add(x_[i]), top_y.add(y_[i]);
   }
-  const float length = u.size(), width = v.size();
+  for (const Box& slice : slices) whole.add(slice.ends);
+  const float length = whole.size(0), width = whole.size(1);
   at(d, Feature::kLength) = length, at(d, Feature::kWidth) = width;
   at(d, Feature::kHeight) = height, at(d, Feature::kBottom) = bottom, at(d, Feature::kTop) = top;
   at(d, Feature::kArea) = length * width;
@@ -180,8 +194,8 @@ void ClusterDescriber::describeOutline(Descriptor& d) const {
   at(d, Feature::kTopSpread) = std::hypot(top_x.size(), top_y.size());
   for (int k = 0; k < kSlices; ++k) {
     const auto s = static_cast<std::size_t>(k);
-    at(d, Feature::kLength1, k) = along[s].size();
-    at(d, Feature::kWidth1, k) = across[s].size();
+    at(d, Feature::kLength1, k) = slices[s].size(0);
+    at(d, Feature::kWidth1, k) = slices[s].size(1);
     at(d, Feature::kShare1, k) = static_cast<float>(count[s]) / static_cast<float>(n);
   }
   const auto returns = static_cast<float>(n);
@@ -192,8 +206,9 @@ void ClusterDescriber::describeOutline(Descriptor& d) const {
 
 void ClusterDescriber::describeSpread(Descriptor& d) const {
   Moments moments;
+  const std::size_t stride = strideOf(x_.size(), kSpreadSample);
   // About the first return: differences of large numbers lose digits.
-  for (std::size_t i = 0; i < x_.size(); i += strideOf(x_.size(), kSpreadSample))
+  for (std::size_t i = 0; i < x_.size(); i += stride)
     moments.add(x_[i] - x_[0], y_[i] - y_[0], z_[i] - z_[0]);
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(moments.covariance());
   std::array<float, 3> spread{};  // largest first
@@ -211,15 +226,17 @@ void ClusterDescriber::describeSpread(Descriptor& d) const {
 /// Share of the least eigenvalue of the returns in cubes of 0.4 m: 0 for planes, 1/3 for leaves.
 void ClusterDescriber::describeRoughness(Descriptor& d) const {
   constexpr float kPerMeter = 2.5f;
-  constexpr double kLeast = 5;                      // returns in a cube
-  thread_local std::vector<std::uint64_t> cube_of;  // before the index of each return
+  constexpr double kLeast = 5;  // returns in a cube
+  const std::size_t stride = strideOf(x_.size(), kRoughnessSample);
+  thread_local std::vector<std::uint64_t> kept;  // its memory
+  std::vector<std::uint64_t>& cube_of = kept;    // before the index of each return
   cube_of.clear();
   const auto cell = [&](float v, float origin) {
     return static_cast<std::uint64_t>(static_cast<int>((v - origin) * kPerMeter) + 512) & 1023u;
   };
-  for (std::size_t i = 0; i < x_.size(); i += strideOf(x_.size(), kRoughnessSample))
-    cube_of.push_back(cell(x_[i], x_[0] - 100) << 52 | cell(y_[i], y_[0] - 100) << 42 |
-                      cell(z_[i], z_[0] - 100) << 32 | i);
+  const float x0 = x_[0] - 100, y0 = y_[0] - 100, z0 = z_[0] - 100;
+  for (std::size_t i = 0; i < x_.size(); i += stride)
+    cube_of.push_back(cell(x_[i], x0) << 52 | cell(y_[i], y0) << 42 | cell(z_[i], z0) << 32 | i);
   std::sort(cube_of.begin(), cube_of.end());
   double least = 0, all = 0;
   for (std::size_t begin = 0; begin < cube_of.size();) {

@@ -136,9 +136,10 @@ class SegmentFinder {
       std::vector<std::uint32_t> members = {g};
       if (surface_of[g] != nullptr) {
         ReturnGroup joined;
-        for (const std::uint32_t m : *surface_of[g])
-          joined.insert(joined.end(), groups[m].begin(), groups[m].end());
-        std::sort(joined.begin(), joined.end());
+        for (const std::uint32_t m : *surface_of[g]) {
+          const auto middle = joined.insert(joined.end(), groups[m].begin(), groups[m].end());
+          std::inplace_merge(joined.begin(), middle, joined.end());
+        }
         members = *surface_of[g];
         if (weightOf(joined) >= min_points_ && sizeOf(joined) <= max_size_) {
           whole = static_cast<int>(segments_.size());

@@ -1,6 +1,7 @@
 #pragma once
 #include <algorithm>
 #include <cstddef>
+#include <limits>
 #include <vector>
 
 #include "libperception/simd/Vector8.h"
@@ -83,25 +84,28 @@ struct TurnedPoints {
   PERCEPTION_LANES TurnedPoints(const PointFours& points, const float* cosines,
                                 const float* sines) {
     const Float c = Directions::of(cosines), s = Directions::of(sines);
+    constexpr float kFar = std::numeric_limits<float>::infinity();
+    low_a = low_b = all<Float>(kFar), high_a = high_b = all<Float>(-kFar);
     std::size_t i = 0;
     do {
       const Float x = Directions::same(points.x[i]), y = Directions::same(points.y[i]);
       a[i] = c * x + s * y, b[i] = c * y - s * x;
+      low_a = smaller(low_a, a[i]), high_a = larger(high_a, a[i]);
+      low_b = smaller(low_b, b[i]), high_b = larger(high_b, b[i]);
     } while (++i < points.groups);
-    bound(a, points.groups, low_a, high_a), bound(b, points.groups, low_b, high_b);
+    low_a = leastOfEach(low_a), high_a = largestOfEach(high_a);
+    low_b = leastOfEach(low_b), high_b = largestOfEach(high_b);
   }
 
   Float a[kMost], b[kMost];
   Float low_a, high_a, low_b, high_b;
 
  private:
-  PERCEPTION_LANES static void bound(const Float* values, std::size_t count, Float& low,
-                                     Float& high) {
-    low = high = values[0];
-    for (std::size_t i = 1; i < count; ++i)
-      low = smaller(low, values[i]), high = larger(high, values[i]);
-    low = Directions::reduced(low, [](const Float4& v) { return leastOf(v); });
-    high = Directions::reduced(high, [](const Float4& v) { return largestOf(v); });
+  PERCEPTION_LANES static Float leastOfEach(const Float& v) {
+    return Directions::reduced(v, [](const Float4& lanes) { return leastOf(lanes); });
+  }
+  PERCEPTION_LANES static Float largestOfEach(const Float& v) {
+    return Directions::reduced(v, [](const Float4& lanes) { return largestOf(lanes); });
   }
 };
 
