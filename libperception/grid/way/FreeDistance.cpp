@@ -13,9 +13,9 @@ namespace {
 constexpr double kStraight = 1e-6;  // [1/m] below it the arc is a line
 constexpr double kTogether = 0.5;   // [m] along the arc: returns of one surface
 constexpr double kGap = 1;          // [m] largest unknown gap between beams
-constexpr double kChild = 1;        // [m] height: what stands as high on the way seen is hit
+constexpr double kChild = 1;        // [m] what stands as high on the way that is seen would be hit
 
-// A column is known when any of two heights of it is, below which a child does not stand.
+// A column is known when one of two heights in it is, both below that of a child.
 bool isKnown(const Corridor& corridor, double s,
              const std::function<double(const Vector3&)>& log_odds_at) {
   constexpr double kHeights[] = {0.5, kChild - 0.1};  // [m] cells of 0.2 m
