@@ -121,9 +121,11 @@ void LogRun::read(const std::function<void(const Scene&)>& keep) {
       if (!input_->arrival()) stopIfAsked();  // sensors at work end their input themselves
       facts_.look(*observation);
       contents_.look(*observation);
-      // Its points are moved where no one else holds the observation.
-      observation.use_count() == 1 ? pipeline_.add(std::move(*observation))
-                                   : pipeline_.add(*observation);
+      if (observation.use_count() == 1) {
+        pipeline_.add(std::move(*observation));
+      } else {  // something else still needs its points
+        pipeline_.add(*observation);
+      }
       if (!events_.isWritten() && pipeline_.firstStamp())
         events_.writeTo(folder_.pathFor("events.jsonl"), *pipeline_.firstStamp());
       take(false);

@@ -48,12 +48,6 @@ struct BoxOnGround {
   double base = 0, base_sigma = 0;      ///< [m] its lower end, ego frame; only with a range
 };
 
-/// [rad] in (-pi, pi], counter-clockwise: middle bearing of a box between its edges, also across
-/// the rear.
-inline double middleBearing(double left, double right) {
-  return wrapAngle(right + 0.5 * wrapAngle(left - right));
-}
-
 /// Joins the halves of objects that are cut by a panorama's seam: boxes of one label of which one
 /// ends at the right border and the other begins at the left one, in about the same rows. The
 /// joined box extends beyond the image's width, has the better score and the list position of the

@@ -249,13 +249,13 @@ void VisionFrontEnd::fill(const SensorFrame& frame, MeasurementScan& scan) const
   const Pose3 T_ego_camera = poseOfCamera(frame);
   std::vector<ObjectDetection> objects = detections->objects;
   const auto index = joinSeam(detections->camera, geometry_.border, objects);
-  const auto standing = probableBoxes(objects);
+  std::vector<ObjectDetection::ImageBox> hiding;
+  if (!detector_.amodal) hiding = probableBoxes(objects);
   for (std::size_t i = 0; i < objects.size(); ++i) {
     const ObjectDetection& object = objects[i];
     if (object.score < detector_.min_score) continue;
     HiddenEdges hidden;
-    if (!detector_.amodal && object.image_box)
-      hidden = hiddenEdges(*object.image_box, standing, geometry_.edge_sigma);
+    if (object.image_box) hidden = hiddenEdges(*object.image_box, hiding, geometry_.edge_sigma);
     auto m = measure(object, frame, detections->camera, T_ego_camera, scan.state, hidden);
     if (!m) {
       ++scan.dropped;

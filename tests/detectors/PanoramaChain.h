@@ -6,6 +6,7 @@
 
 #include "libperception/core/math/Random.h"
 #include "libperception/detectors/panorama/Panorama.h"
+#include "libperception/measurement/models/FootprintModel.h"
 #include "libperception/vision/BoxGeometry.h"
 
 // A rendered panorama with one post in it, its tiles, a detector without faults, and the way back

@@ -4,6 +4,9 @@
 
 #include <cmath>
 #include <limits>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "libperception/vision/VisionFrontEnd.h"
 
@@ -154,9 +157,35 @@ TEST(VisionFrontEnd, SureBoxesHideWhatStandsBehindThem) {
   EXPECT_EQ(doubtful->visibility(-0.02, 0.02, 15, 0.5), 1);
 }
 
+ObjectDetection detectionOf(const std::string& label, double score,
+                            const ObjectDetection::ImageBox& box) {
+  ObjectDetection o;
+  o.label = label;
+  o.score = score;
+  o.image_box = box;
+  return o;
+}
+
+const Pose3 kCameraPose = cameraPose(1.65);
+
+/// What the front end of sensor A makes of these boxes, with the classes and keys of an INI.
+MeasurementScan scanOf(const std::string& ini, std::vector<ObjectDetection> objects) {
+  Config config = Config::fromText(ini, "a.ini");
+  const auto front_end = makeVisionFrontEnd(config, "A", readClassTable(config));
+  EXPECT_NO_THROW(config.finish());
+  SensorFrame frame;
+  frame.sensor = "A";
+  frame.T_ego_sensor = kCameraPose;
+  ObjectDetections detections;
+  detections.camera = kCamera;
+  detections.objects = std::move(objects);
+  frame.data = detections;
+  return front_end->extract(frame);
+}
+
 /// One box of a pedestrian by a detector with these keys.
 MeasurementScan scanOf(const std::string& detector, double score) {
-  Config config = Config::fromText(
+  return scanOf(
       "[class.pedestrian]\nmotion = constant-velocity\n[class.cyclist]\nmotion = wheeled\n"
       "[class.car]\nmotion = wheeled\n[class.pole]\nmotion = static\nreported = false\n"
       "[sensor.A]\nkind = boxes\nmodality = C\n[sensor.A.class.pedestrian]\nlabel.person = 0.9\n"
@@ -164,21 +193,7 @@ MeasurementScan scanOf(const std::string& detector, double score) {
       "[sensor.A.class.pole]\nlabel.person = 0.5\n[sensor.A.detector]\nscore_slope = 2\n"
       "score_offset = 0.5\n" +
           detector,
-      "a.ini");
-  const auto front_end = makeVisionFrontEnd(config, "A", readClassTable(config));
-  EXPECT_NO_THROW(config.finish());
-  SensorFrame frame;
-  frame.sensor = "A";
-  frame.T_ego_sensor = cameraPose(1.65);
-  ObjectDetections detections;
-  detections.camera = kCamera;
-  ObjectDetection o;
-  o.label = "Pedestrian";
-  o.score = score;
-  o.image_box = boardBox(12, 0.4, -0.4, 1.7, frame.T_ego_sensor);
-  detections.objects.push_back(o);
-  frame.data = detections;
-  return front_end->extract(frame);
+      {detectionOf("Pedestrian", score, boardBox(12, 0.4, -0.4, 1.7, kCameraPose))});
 }
 
 TEST(VisionFrontEnd, ScoresAreEvidenceAgainstThings) {
@@ -214,27 +229,13 @@ TEST(VisionFrontEnd, EdgesThatRepeatCountAsOftenAsTheyAreNew) {
 /// Axes that are seen of a car at 20 m whose left part stands behind one at 12 m, by a detector
 /// with these keys.
 AxisMask axesBehindACar(const std::string& detector, double nearer_score) {
-  Config config = Config::fromText(
+  const MeasurementScan scan = scanOf(
       "[class.car]\nmotion = wheeled\n[class.pedestrian]\nmotion = constant-velocity\n"
       "[sensor.A]\nkind = boxes\nmodality = C\n[sensor.A.detector]\nscore_slope = 2\n"
       "score_offset = 0.5\n" +
           detector,
-      "a.ini");
-  const auto front_end = makeVisionFrontEnd(config, "A", readClassTable(config));
-  EXPECT_NO_THROW(config.finish());
-  SensorFrame frame;
-  frame.sensor = "A";
-  frame.T_ego_sensor = cameraPose(1.65);
-  ObjectDetections detections;
-  detections.camera = kCamera;
-  ObjectDetection behind, nearer;
-  behind.label = nearer.label = "Car";
-  behind.score = 0.9, nearer.score = nearer_score;
-  behind.image_box = boardBox(20, -1.1, -2, 1.5, frame.T_ego_sensor);
-  nearer.image_box = boardBox(12, 0.9, -0.7, 1.5, frame.T_ego_sensor);
-  detections.objects = {behind, nearer};
-  frame.data = detections;
-  const auto scan = front_end->extract(frame);
+      {detectionOf("Car", 0.9, boardBox(20, -1.1, -2, 1.5, kCameraPose)),
+       detectionOf("Car", nearer_score, boardBox(12, 0.9, -0.7, 1.5, kCameraPose))});
   EXPECT_EQ(scan.measurements.at(1).seen, FootprintModel::kAll) << "nothing stands before it";
   return scan.measurements.at(0).seen;
 }

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "libperception/core/math/Random.h"
+#include "libperception/measurement/models/FootprintModel.h"
 #include "libperception/vision/VisionFrontEnd.h"
 
 namespace perception {

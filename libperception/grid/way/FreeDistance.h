@@ -68,8 +68,8 @@ Vector2 onArc(const Corridor& corridor, const ArcPlace& place);
 FreeDistance freeDistance(const Corridor& corridor, const std::vector<GridCell>& occupied,
                           double step, const std::function<double(const Vector3&)>& log_odds_at);
 
-/// [m] to which the corridor was observed without a gap longer than 1 m, from `seen` on, by beams
-/// that pass `from` (the sensor's place, world) to `ends` between the ground and `height` [m].
+/// [m] to which the corridor was observed without a gap over 1 m, from `seen` on, by beams to
+/// `ends` from the sensor at `from` (world) that pass up to `height` [m], 1 m at most, above it.
 double seenByBeams(const Corridor& corridor, double seen, const Vector3& from,
                    const std::vector<const GridPoints*>& ends, double height);
 

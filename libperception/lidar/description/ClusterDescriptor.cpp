@@ -228,8 +228,8 @@ void ClusterDescriber::describeRoughness(Descriptor& d) const {
   constexpr float kPerMeter = 2.5f;
   constexpr double kLeast = 5;  // returns in a cube
   const std::size_t stride = strideOf(x_.size(), kRoughnessSample);
-  thread_local std::vector<std::uint64_t> kept;  // its memory
-  std::vector<std::uint64_t>& cube_of = kept;    // before the index of each return
+  thread_local std::vector<std::uint64_t> memory;
+  std::vector<std::uint64_t>& cube_of = memory;  // before the index of each return
   cube_of.clear();
   const auto cell = [&](float v, float origin) {
     return static_cast<std::uint64_t>(static_cast<int>((v - origin) * kPerMeter) + 512) & 1023u;

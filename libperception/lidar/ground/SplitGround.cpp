@@ -22,10 +22,11 @@ PERCEPTION_WIDEST void markObstacles(const float* __restrict heights, std::size_
   for (std::size_t k = 0; k < count; ++k) marks[k] = (heights[k] > low) & (heights[k] < high);
 }
 
-PERCEPTION_WIDEST void markAll(const float* __restrict x, const float* __restrict y,
-                               const float* __restrict heights, std::size_t count,
-                               const SlabRules rules, std::int32_t* __restrict obstacles,
-                               std::int32_t* __restrict others, std::int32_t* __restrict road) {
+/// Marks the parts of a block: `others` are those that count and are no obstacles.
+PERCEPTION_WIDEST void markParts(const float* __restrict x, const float* __restrict y,
+                                 const float* __restrict heights, std::size_t count,
+                                 const SlabRules rules, std::int32_t* __restrict obstacles,
+                                 std::int32_t* __restrict others, std::int32_t* __restrict road) {
   for (std::size_t k = 0; k < count; ++k) {
     const float h = heights[k];
     const std::int32_t counts =
@@ -100,10 +101,10 @@ void splitGround(const LidarCloud& cloud, const EgoPoints& points,
 
 void SlabParts::find(const float* x, const float* y, const float* heights, std::size_t count,
                      const SlabRules& rules) {
-  std::array<std::int32_t, kSize> is_obstacle, counts, is_road;
-  markAll(x, y, heights, count, rules, is_obstacle.data(), counts.data(), is_road.data());
+  std::array<std::int32_t, kSize> is_obstacle, is_other, is_road;
+  markParts(x, y, heights, count, rules, is_obstacle.data(), is_other.data(), is_road.data());
   obstacles.count = packPlaces(is_obstacle.data(), count, 0, obstacles.index.data());
-  others.count = packPlaces(counts.data(), count, 0, others.index.data());
+  others.count = packPlaces(is_other.data(), count, 0, others.index.data());
   road.count = packPlaces(is_road.data(), count, 0, road.index.data());
 }
 

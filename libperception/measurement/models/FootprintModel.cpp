@@ -25,9 +25,6 @@ bool seen(const Measurement& m, FootprintModel::Axis axis) { return m.seen >> ax
 
 Vector2 sensorPosition(const SensorState& s) { return s.T_world_sensor.translation().head<2>(); }
 
-/// [rad] between two edges, counter-clockwise.
-double middle(double left, double right) { return right + 0.5 * wrapAngle(left - right); }
-
 double rangeOf(const Measurement& m, const SensorState& s) {
   return seen(m, FootprintModel::kRange)
              ? std::max(m.z[FootprintModel::kRange], kClearance)
@@ -62,7 +59,7 @@ double widthDensity(const ObjectClass& c, double width, double noise, double sha
 /// [m] of the box of a measurement that has both edges, across the line of sight.
 double boxAcross(const Measurement& m, const SensorState& s) {
   const double left = m.z[FootprintModel::kLeft], right = m.z[FootprintModel::kRight];
-  const double angle = yawOf(s.T_world_sensor) + middle(left, right) - m.sides->yaw;
+  const double angle = yawOf(s.T_world_sensor) + middleBearing(left, right) - m.sides->yaw;
   return m.sides->length * std::abs(std::sin(angle)) + m.sides->width * std::abs(std::cos(angle));
 }
 
@@ -251,7 +248,7 @@ std::optional<BirthState> FootprintModel::birth(const Measurement& m, ClassId c,
   const bool both = seen(m, kLeft) && seen(m, kRight);
   const Vector2 d = m.position - origin;
   const double bearing =
-      both ? forward + middle(m.z[kLeft], m.z[kRight]) : std::atan2(d.y(), d.x());
+      both ? forward + middleBearing(m.z[kLeft], m.z[kRight]) : std::atan2(d.y(), d.x());
   const Extent& e = birth.extent;
   const double radius = 0.25 * (e.length + e.width);
   const double rho = seen(m, kRange) ? m.z[kRange] + radius : d.norm();

@@ -4,6 +4,12 @@
 
 namespace perception {
 
+/// [rad] in (-pi, pi], counter-clockwise: middle bearing of an object between its edges, also
+/// across the rear.
+inline double middleBearing(double left, double right) {
+  return wrapAngle(right + 0.5 * wrapAngle(left - right));
+}
+
 /// Outline of an object's footprint: z = (bearing of its left edge, bearing of its right edge,
 /// range of its nearest point), bearings [rad] counter-clockwise off the sensor's forward axis in
 /// the horizontal plane, range [m]. For lidar clusters and for image boxes, whose lower edge gives

@@ -67,7 +67,7 @@ class Doubter {
     const float doubt = 1 - (alone ? trust : trust * (1 - shape));
     const bool asks = caused_ && (alone || static_cast<double>(doubt) > kHardly);
     const float solid = returns_.solid.empty() ? PlacedReturns::kFewDirections : returns_.solid[i];
-    // Whether it stands in a cloud matters to what may be a surface alone.
+    // Whether it stands in a cloud matters only where it may be a surface.
     const bool perhaps_surface = solid >= kPerhapsSurface;
     const CausesHere here =
         asks ? frame_.causes.at(place, frame_.stamp, !perhaps_surface) : CausesHere{};
