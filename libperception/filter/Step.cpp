@@ -11,7 +11,7 @@
 #include "libperception/filter/likelihood/LikelihoodTable.h"
 #include "libperception/filter/predict/Prediction.h"
 #include "libperception/filter/state/IndexMap.h"
-#include "libperception/filter/state/Parallel.h"
+#include "libperception/core/system/Parallel.h"
 #include "libperception/filter/update/UpdateCache.h"
 
 namespace perception {

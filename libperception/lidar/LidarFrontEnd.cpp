@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <optional>
 
+#include "libperception/core/system/Parallel.h"
 #include "libperception/lidar/LidarMeasurements.h"
 #include "libperception/lidar/classification/JudgedClusters.h"
 #include "libperception/lidar/ground/SplitGround.h"
@@ -226,17 +227,20 @@ void LidarFrontEnd::fill(const SensorFrame& frame, MeasurementScan& scan) const 
     m.detection = static_cast<int>(scan.measurements.size());
     scan.measurements.push_back(std::move(m));
   };
-  for (const JudgedCluster& cluster : found.judged) {
+  std::vector<std::optional<Measurement>> judged(found.judged.size());
+  parallelFor(judged.size(), [&](std::size_t k) {
+    const JudgedCluster& cluster = found.judged[k];
     Cluster outline;
     outline.points = cluster.points;
     describeCluster(found.x, found.y, found.above, outline);
-    if (!reached(outline.hull)) continue;
-    Measurement m = measurementOf(context, cluster, std::move(outline));
+    if (!reached(outline.hull)) return;
+    Measurement& m = judged[k].emplace(measurementOf(context, cluster, std::move(outline)));
     m.log_class.reserve(classes_.classes.size());
     for (const ObjectClass& c : classes_.classes)
       m.log_class.push_back(cluster.evidence[static_cast<std::size_t>(c.shape)]);
-    add(std::move(m));
-  }
+  });
+  for (std::optional<Measurement>& m : judged)
+    if (m) add(std::move(*m));
   for (const Cluster& cluster : found.clusters)
     if (reached(cluster.hull)) add(measurementOf(context, cluster));
   for (const PersonPeak& peak : found.persons)

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "libperception/core/system/Parallel.h"
 #include "libperception/filter/predict/Prediction.h"
-#include "libperception/filter/state/Parallel.h"
 #include "libperception/pipeline/input/MergedScanners.h"
 #include "libperception/sensors/frames/FromObservation.h"
 #include "libperception/sensors/observations/Conversions.h"
@@ -230,7 +230,7 @@ void Pipeline::processFrame(std::size_t sensor, SensorFrame& frame) {
     inputs_.apply(frame);
     if (setup_.sensors[sensor].params.modality == Modality::kLidar)
       frame.causes.wakes = wakes_.at(frame.stamp);
-    MeasurementScan scan = scan_maker_.measure(sensor, frame);
+    MeasurementScan scan = runAlone([&] { return scan_maker_.measure(sensor, frame); });
     catchUp();
     const double share = conditions_.apply(sensor, scan, health_.seenShare(sensor));
     wakes_.apply(sensor, scan);

@@ -6,7 +6,7 @@
 #include <set>
 #include <vector>
 
-#include "libperception/filter/state/Parallel.h"
+#include "libperception/core/system/Parallel.h"
 #include "libperception/pipeline/PipelineSetup.h"
 #include "libperception/pipeline/ScanMaker.h"
 #include "libperception/pipeline/input/EgoTimeline.h"

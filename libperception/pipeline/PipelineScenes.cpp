@@ -2,7 +2,7 @@
 #include <unordered_set>
 #include <utility>
 
-#include "libperception/filter/state/Parallel.h"
+#include "libperception/core/system/Parallel.h"
 #include "libperception/pipeline/Pipeline.h"
 
 namespace perception {

@@ -7,7 +7,7 @@
 
 #include "libperception/filter/predict/Prediction.h"
 #include "libperception/filter/state/ClassFilterMotion.h"
-#include "libperception/filter/state/Parallel.h"
+#include "libperception/core/system/Parallel.h"
 #include "libperception/filter/update/Smoothing.h"
 
 namespace perception {

@@ -10,7 +10,7 @@
 #include "libperception/core/math/LogMath.h"
 #include "libperception/filter/associate/RankedSums.h"
 #include "libperception/filter/associate/ScanParts.h"
-#include "libperception/filter/state/Parallel.h"
+#include "libperception/core/system/Parallel.h"
 
 namespace perception {
 namespace {

@@ -12,7 +12,7 @@
 #include "libperception/filter/likelihood/PairDensity.h"
 #include "libperception/filter/likelihood/PhantomOdds.h"
 #include "libperception/filter/state/ClassFilterMotion.h"
-#include "libperception/filter/state/Parallel.h"
+#include "libperception/core/system/Parallel.h"
 
 namespace perception {
 namespace {

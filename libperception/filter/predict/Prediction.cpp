@@ -8,7 +8,7 @@
 
 #include "libperception/filter/state/BankBatch.h"
 #include "libperception/filter/state/ClassFilterMotion.h"
-#include "libperception/filter/state/Parallel.h"
+#include "libperception/core/system/Parallel.h"
 
 namespace perception {
 namespace {

@@ -6,7 +6,7 @@
 
 #include "libperception/filter/likelihood/AssignmentPrior.h"
 #include "libperception/filter/likelihood/Gating.h"
-#include "libperception/filter/state/Parallel.h"
+#include "libperception/core/system/Parallel.h"
 #include "libperception/filter/update/LanePrior.h"
 #include "libperception/filter/update/Update.h"
 

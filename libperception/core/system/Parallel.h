@@ -79,8 +79,8 @@ inline bool canRunBoth() {
 
 /// f(), which does none of the work of a WorkBehind while it waits for loops of its own.
 template <class Function>
-void runAlone(const Function& f) {
-  tbb::this_task_arena::isolate(f);
+auto runAlone(const Function& f) {
+  return tbb::this_task_arena::isolate(f);
 }
 
 /// Work that is done in the order in which it is given, beside the thread that gives it, where

@@ -1,4 +1,4 @@
-#include "libperception/filter/state/Parallel.h"
+#include "libperception/core/system/Parallel.h"
 
 #include <gtest/gtest.h>
 
