@@ -107,7 +107,8 @@ void App::addConfigOptions(CLI::App& cli, bool required) {
   cli.add_option("-c,--config", config_file, "Configuration file (INI)")->required(required);
   cli.add_option("--set", settings, "Change one value of the configuration: section.key=value")
       ->allow_extra_args(false);
-  cli.add_flag("--print-config", print_config, "Print the effective configuration and stop");
+  cli.add_flag("--print-config", print_config,
+               "Print every key of the effective configuration, with unit and range, and exit");
 }
 
 void App::addInputOption(CLI::App& cli, bool required) {
@@ -155,6 +156,13 @@ int runApp(App& app, int argc, const char* const* argv) {
   cli.formatter(std::make_shared<Formatter>());
   cli.set_version_flag("--version", fmt::format("{} {}", app.name(), PERCEPTION_VERSION));
   cli.add_flag("-v,--verbose", app.verbosity, "Print more; may be repeated");
+  cli.footer(
+      "Exit codes: 0 done; 3 done, but part of the data was missing or bad; 64 wrong command "
+      "line;\n"
+      "65 input cannot be used; 66 no such input; 69 the machine lacks something; 70 internal "
+      "error;\n"
+      "73 output cannot be created; 74 reading or writing failed; 75 stopped, try again; 78 wrong "
+      "configuration");
   try {
     app.declare(cli);
   } catch (const CLI::Error& error) {  // an option declared twice: an internal error

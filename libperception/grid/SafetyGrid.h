@@ -15,19 +15,19 @@ namespace perception {
 struct GridScan {
   Stamp stamp;
   Vector3 origin = Vector3::Zero();  ///< [m] position of the sensor
-  /// The vehicle on the ground: center of the window and z = 0 of heights.
+  /// Ego frame, leveled: its origin is the center of the window and the zero of heights.
   Pose3 T_world_ground = Pose3::Identity();
   GridPoints hits;             ///< obstacle returns
   std::vector<float> weights;  ///< [0, 1] of each hit: 1 - P(phantom); empty: all 1
-  GridPoints clear;            ///< returns that are no obstacle (ground): their beams only clear
+  GridPoints clear;            ///< returns of the ground: their beams only clear
 };
 
 /// Statistics of an inserted scan.
 struct GridStats {
   std::size_t hits = 0;        ///< returns within the window
-  std::size_t rays = 0;        ///< that cleared space
+  std::size_t rays = 0;        ///< beams that cleared space
   std::size_t not_finite = 0;  ///< points that were dropped
-  bool late = false;           ///< stamp before the last scan's; inserted at the time of that
+  bool late = false;           ///< older than the last scan; inserted at its time
 };
 
 /// Occupancy grid around the vehicle, independent of the filter (method.md 8.4). Evidence is added
@@ -42,11 +42,10 @@ class SafetyGrid {
   virtual GridStats insert(const GridScan& scan) = 0;
   /// At the time of the last scan; 0 = unknown, also outside the window.
   virtual double logOdds(const Vector3& place) const = 0;
-  /// The cells above params().occupied whose centers the area holds, in an order that depends on
-  /// the scans alone.
+  /// The occupied cells whose centers lie in the area, in an order that depends on the scans alone.
   virtual std::vector<GridCell> occupiedWithin(const GridArea& area) const = 0;
   std::vector<GridCell> occupiedCells() const { return occupiedWithin({}); }
-  /// All known cells, in such an order.
+  /// All cells with evidence, ordered likewise.
   virtual std::vector<GridCell> knownCells() const = 0;
   /// Inserts stored cells of another grid into the window of the last scan, at its time.
   virtual void restore(const std::vector<GridCell>& cells) = 0;
@@ -54,7 +53,7 @@ class SafetyGrid {
 
   const GridParams& params() const { return params_; }
   bool isOccupied(const Vector3& place) const { return logOdds(place) > params_.occupied; }
-  /// Free distance along a corridor.
+  /// Distance along a corridor to its first occupied cells, and how far it was observed.
   FreeDistance freeDistance(const Corridor& corridor) const;
 
  protected:

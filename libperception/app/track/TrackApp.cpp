@@ -53,6 +53,9 @@ EventLog::Listener listenerOf(RosView* ros) {
 void TrackApp::declare(CLI::App& cli) {
   addConfigOptions(cli, false);
   addInputOption(cli, false);
+  cli.get_option("--input")->description(
+      "Rawlog, or several, each tracked by itself; live:INI, ros2:INI: the sensors of a running "
+      "system");
   addOutputOption(cli, false);
   addRunOptions(cli);
   cli.add_option("--sensors", sensors,
@@ -65,21 +68,21 @@ void TrackApp::declare(CLI::App& cli) {
       ->check(CLI::Range(0.0, 1000.0));
   cli.add_flag("--measurements", measurements,
                "Record the filter's input: measurements.csv, scans.csv, sensors.csv");
-  cli.add_option("--duration", duration,
-                 "[s] End a run with -i live:INI or ros2:INI after this time; default: at SIGINT "
-                 "or SIGTERM")
+  cli.add_option(
+         "--duration", duration,
+         "[s] End a live run (-i live:INI, ros2:INI) after this time; default: on SIGINT or "
+         "SIGTERM")
       ->check(CLI::Range(0.01, 1e9));
   cli.add_option("--record", record,
                  "Record the sensors of -i live:INI or ros2:INI in this folder");
   cli.add_option("--publish", publish,
-                 "Send scenes by DDS, in the form that ROS 2 nodes read, on INTERFACE[:DOMAIN], "
-                 "for example lo:0");
+                 "Publish scenes to ROS 2 nodes over DDS on INTERFACE[:DOMAIN], for example lo:0");
   declareServe(cli);
   cli.add_flag("--overwrite", overwrite,
-               "Replace the results in the output folder, evaluation and film included, even if "
-               "they are those of another run");
+               "Replace all results in the output folder, even those of another run, with their "
+               "evaluation and film; without it a folder with other results is refused");
   cli.add_flag("--info", info,
-               "Print what the logs of -i hold (sensor labels, classes, rates) and stop");
+               "List the sensor labels, classes and rates of the logs of -i and exit");
   cli.add_option(
          "--export", exports,
          "Also write the objects in another format: kitti:FILE writes KITTI's tracking format")
@@ -87,9 +90,10 @@ void TrackApp::declare(CLI::App& cli) {
 }
 
 void TrackApp::declareServe(CLI::App& cli) {
-  cli.add_option("--serve", serve.port,
-                 "Show the run while it goes on, in a browser or in Foxglove, on this port (0: any "
-                 "free port); the program prints the address to open")
+  cli.add_option(
+         "--serve", serve.port,
+         "Serve a live view of the run to a browser or to Foxglove on this port (0: any free "
+         "port); the program prints the address to open")
       ->expected(0, 1)
       ->default_str("8765");
   cli.add_option(
@@ -100,9 +104,8 @@ void TrackApp::declareServe(CLI::App& cli) {
   cli.add_option("--serve-origin", serve.origins,
                  "Also let web pages of this origin connect, for example https://HOST")
       ->allow_extra_args(false);
-  cli.add_option(
-         "--serve-speed", serve.speed,
-         "Play a log at this multiple of the recorded speed; default: as fast as it is tracked")
+  cli.add_option("--serve-speed", serve.speed,
+                 "Play a log at this multiple of the recorded speed; default: as fast as possible")
       ->check(CLI::Range(0.01, 1000.0));
 }
 

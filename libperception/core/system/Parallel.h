@@ -19,8 +19,8 @@ extern "C" void __tsan_release(void* address);
 
 namespace perception {
 
-/// The order of begin, bodies and end of a loop, for ThreadSanitizer: TBB is built without it.
-/// Empty in all other builds.
+/// Shows ThreadSanitizer that a loop begins before its bodies and ends after them, since TBB is not
+/// instrumented. Empty in all other builds.
 class LoopOrder {
  public:
 #ifdef __SANITIZE_THREAD__
@@ -37,8 +37,9 @@ class LoopOrder {
 #endif
 };
 
-/// f(0) ... f(n-1), in any order and on any number of threads; the calls must be independent. Runs
-/// in the caller for few items or one thread, where tasks cost more than they gain.
+/// f(0) ... f(n-1), in any order and on any number of threads; no call may write what another one
+/// reads or writes. Throws what one of them threw. Runs in the caller if n is below 24 or there is
+/// only one thread: tasks would not pay.
 template <class Function>
 void parallelFor(std::size_t n, const Function& f) {
   constexpr std::size_t kWorthThreads = 24;
@@ -55,8 +56,8 @@ void parallelFor(std::size_t n, const Function& f) {
   }
 }
 
-/// f() and g(), which must be independent, at the same time where there are two threads. A thread
-/// that waits for the other starts nothing else in between.
+/// f() and g(), which must be independent, at the same time where there are two threads. While one
+/// thread waits for the other, it takes no work from outside of them.
 template <class First, class Second>
 void runBoth(const First& f, const Second& g) {
   tbb::this_task_arena::isolate([&] {
@@ -72,19 +73,19 @@ void runBoth(const First& f, const Second& g) {
   });
 }
 
-/// Whether there is a second thread.
+/// Whether more than one thread is allowed.
 inline bool canRunBoth() {
   return tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism) > 1;
 }
 
-/// f(), which does none of the work of a WorkBehind while it waits for loops of its own.
+/// f(). While it waits for its own loops, its thread takes no work of a WorkBehind.
 template <class Function>
 auto runAlone(const Function& f) {
   return tbb::this_task_arena::isolate(f);
 }
 
-/// Work that is done in the order in which it is given, beside the thread that gives it, where
-/// there are two threads. For one giver.
+/// Does what is added in that order, on a second thread if there is one; else in wait(). Only one
+/// thread may call add() and wait(). The destructor waits, too.
 class WorkBehind {
  public:
   WorkBehind() = default;
@@ -97,8 +98,8 @@ class WorkBehind {
     waiting_.push_back(std::move(work));
     if (!std::exchange(works_, true)) group_.run([this] { workAll(); });
   }
-  /// Returns when all is done. Throws what the first work that failed threw; those after it are
-  /// left out.
+  /// Returns when all is done. Rethrows what the first function that failed threw; those added
+  /// after it, before this call, are skipped.
   void wait() {
     group_.wait();
     const std::lock_guard lock(mutex_);
@@ -128,7 +129,7 @@ class WorkBehind {
   std::deque<std::function<void()>> waiting_;
   bool works_ = false;
   std::exception_ptr fault_;
-  LoopOrder order_;  // of the members before it and of workAll()
+  LoopOrder order_;  // the members above are made before workAll() runs
   tbb::task_group group_;
 };
 
