@@ -170,8 +170,7 @@ bool holdsOneVehicle(const Descriptor& d) {
 }
 
 /// Marks the clusters that stand for themselves.
-std::vector<char> standing(const std::vector<DescribedCluster>& clusters,
-                           const std::vector<Probabilities>& probabilities) {
+std::vector<char> standing(const std::vector<DescribedCluster>& clusters) {
   const std::size_t n = clusters.size();
   // The likeliest over all parts of parts; `person`: or a cyclist.
   std::vector<double> person(n, 0), vehicle(n, 0);
@@ -180,7 +179,7 @@ std::vector<char> standing(const std::vector<DescribedCluster>& clusters,
     const int whole = clusters[i].segment.whole;
     if (whole < 0) continue;
     const auto w = static_cast<std::size_t>(whole);
-    const Probabilities& p = probabilities[i];
+    const Probabilities& p = clusters[i].probabilities;
     person[w] = std::max(
         {person[w], person[i], at(p, ClusterKind::kPedestrian), at(p, ClusterKind::kCyclist)});
     vehicle[w] = std::max({vehicle[w], vehicle[i], at(p, ClusterKind::kVehicle)});
@@ -190,8 +189,9 @@ std::vector<char> standing(const std::vector<DescribedCluster>& clusters,
   for (std::size_t i = 0; i < n; ++i) {
     const int whole = clusters[i].segment.whole;
     const bool reached = whole < 0 || in_parts[static_cast<std::size_t>(whole)];
-    const double own = roadUser(probabilities[i]);
-    const bool one_vehicle = at(probabilities[i], ClusterKind::kVehicle) >= kLikelyWhole &&
+    const Probabilities& p = clusters[i].probabilities;
+    const double own = roadUser(p);
+    const bool one_vehicle = at(p, ClusterKind::kVehicle) >= kLikelyWhole &&
                              person[i] < kLeastPart && vehicles[i] > 1 &&
                              holdsOneVehicle(clusters[i].descriptor);
     in_parts[i] = reached && own < kSureWhole && !one_vehicle &&
@@ -206,19 +206,18 @@ std::vector<char> standing(const std::vector<DescribedCluster>& clusters,
 Judgement judgedClusters(const LidarDetections& found, const LidarCloud& cloud,
                          const DirectionCells& cells, const ClusterClassifier& classifier,
                          const CausesAt& causes_at) {
-  std::vector<Probabilities> probabilities;
-  auto clusters = describedClusters(found, cloud, cells, [&](const DescribedCluster& cluster) {
+  auto clusters = describedClusters(found, cloud, cells, [&](DescribedCluster& cluster) {
     const auto range =
         static_cast<double>(cluster.descriptor[static_cast<std::size_t>(Feature::kRange)]);
-    const auto p = withinSize(classifier.probabilities(cluster.descriptor), cluster.descriptor,
-                              found.points.sensor.z() + found.top_slope * range);
-    probabilities.push_back(p);
+    const Probabilities& p = cluster.probabilities =
+        withinSize(classifier.probabilities(cluster.descriptor), cluster.descriptor,
+                   found.points.sensor.z() + found.top_slope * range);
     return roadUser(p) < kSureWhole &&
            at(p, ClusterKind::kThing) + at(p, ClusterKind::kPhantom) < kSureThing;
   });
   const std::size_t n = clusters.size();
   const PhantomPrior prior(classifier.prior());
-  const std::vector<char> stands = standing(clusters, probabilities);
+  const std::vector<char> stands = standing(clusters);
   Judgement judgement;
   std::vector<JudgedCluster>& judged = judgement.clusters;
   judgement.phantom.assign(found.obstacles.size(), PlacedReturns::kNoCluster);
@@ -226,12 +225,12 @@ Judgement judgedClusters(const LidarDetections& found, const LidarCloud& cloud,
     if (!stands[i]) continue;
     const CausesHere causes =
         causes_at ? causes_at(middleOf(found, clusters[i].segment.points)) : CausesHere{};
-    const Probabilities p = prior(probabilities[i], causes);
+    const Probabilities p = prior(clusters[i].probabilities, causes);
     const double phantom = at(p, ClusterKind::kPhantom);
     for (const std::uint32_t point : clusters[i].segment.points)
       judgement.phantom[point] = static_cast<float>(phantom);
     ++judgement.verdicts.clusters;
-    if (phantom > kSurePhantom && roadUser(probabilities[i]) < kHardlyRoadUser) {
+    if (phantom > kSurePhantom && roadUser(clusters[i].probabilities) < kHardlyRoadUser) {
       judgement.verdicts.phantoms.push_back(phantomOf(found, clusters[i].segment.points, phantom));
       continue;
     }

@@ -3,6 +3,7 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 #include <utility>
 
@@ -126,63 +127,72 @@ ClusterDescriber::ClusterDescriber(const LidarDetections& found, const LidarClou
   sortByPlace();
 }
 
-Descriptor ClusterDescriber::describe(const std::vector<std::uint32_t>& members) {
+/// Numbers of clusters go on from scan to scan, so that old ones need not be wiped.
+void ClusterDescriber::Members::begin(std::size_t obstacles) {
+  if (own == std::numeric_limits<std::int32_t>::max()) number.clear(), own = 0;
+  if (number.size() < obstacles) number.resize(obstacles, 0);
+  ++own;
+}
+
+Descriptor ClusterDescriber::describe(const std::vector<std::uint32_t>& members) const {
+  thread_local Members memory;
+  Members& c = memory;
+  c.begin(rank_.size());
   Descriptor d{};
   const std::size_t count = members.size();
-  x_.resize(count), y_.resize(count), z_.resize(count), h_.resize(count);
-  ++cluster_;
+  c.x.resize(count), c.y.resize(count), c.z.resize(count), c.h.resize(count);
   for (std::size_t i = 0; i < count; ++i) {
     const std::uint32_t k = members[i];
-    x_[i] = dx_[k], y_[i] = dy_[k], z_[i] = dz_[k], h_[i] = found_.above[k];
-    sorted_mark_[rank_[k]] = cluster_;
+    c.x[i] = dx_[k], c.y[i] = dy_[k], c.z[i] = dz_[k], c.h[i] = found_.above[k];
+    c.number[rank_[k]] = c.own;
   }
   const auto n = static_cast<float>(members.size());
-  const float mx = std::accumulate(x_.begin(), x_.end(), 0.0f) / n,
-              my = std::accumulate(y_.begin(), y_.end(), 0.0f) / n;
+  const float mx = std::accumulate(c.x.begin(), c.x.end(), 0.0f) / n,
+              my = std::accumulate(c.y.begin(), c.y.end(), 0.0f) / n;
   at(d, Feature::kRange) = std::hypot(mx, my);
-  describeEdges(d);  // first: slices, aspect and widths refer to its direction
+  describeEdges(c, d);  // first: slices, aspect and widths refer to its direction
   at(d, Feature::kAspect) =
-      std::abs(along_x_ * mx + along_y_ * my) / std::max(at(d, Feature::kRange), 1e-3f);
-  describeOutline(d);
-  describeSpread(d);
-  describeRoughness(d);
-  describeDirections(members, d);
+      std::abs(c.along_x * mx + c.along_y * my) / std::max(at(d, Feature::kRange), 1e-3f);
+  describeOutline(c, d);
+  describeSpread(c, d);
+  describeRoughness(c, d);
+  describeDirections(c, members, d);
   describeIntensity(members, d);
-  describeNeighbors(members, d);
+  describeNeighbors(c, members, d);
   return d;
 }
 
-void ClusterDescriber::describeEdges(Descriptor& d) {
-  const std::size_t stride = strideOf(x_.size(), kOutlineSample);
-  const std::size_t count = (x_.size() - 1) / stride + 1;
+void ClusterDescriber::describeEdges(Members& c, Descriptor& d) {
+  const std::size_t stride = strideOf(c.x.size(), kOutlineSample);
+  const std::size_t count = (c.x.size() - 1) / stride + 1;
   const EdgeFit fit =
       fitEdges({count, [&](std::size_t i) {
-                  return std::make_pair(x_[i * stride] - x_[0], y_[i * stride] - y_[0]);
+                  return std::make_pair(c.x[i * stride] - c.x[0], c.y[i * stride] - c.y[0]);
                 }});
-  along_x_ = fit.along_x, along_y_ = fit.along_y;
+  c.along_x = fit.along_x, c.along_y = fit.along_y;
   at(d, Feature::kEdgeDistance) = fit.distance / static_cast<float>(count);
   at(d, Feature::kEdgeShare) = fit.close / static_cast<float>(count);
 }
 
-void ClusterDescriber::describeOutline(Descriptor& d) const {
-  const std::size_t n = x_.size();
+void ClusterDescriber::describeOutline(const Members& c, Descriptor& d) {
+  const std::size_t n = c.x.size();
   std::vector<float> heights;
   heights.reserve(kSpreadSample);
   const std::size_t stride = strideOf(n, kSpreadSample);
-  for (std::size_t i = 0; i < n; i += stride) heights.push_back(h_[i]);
+  for (std::size_t i = 0; i < n; i += stride) heights.push_back(c.h[i]);
   const float bottom = quantile(heights, 0.01), top = quantile(heights, 0.99);
   const float height = std::max(top - bottom, 0.05f);
   Box whole;
   std::array<Box, kSlices> slices;
   std::array<int, kSlices> count{};
   Interval top_x, top_y;
-  const Float4 of_x = {along_x_, -along_y_, -along_x_, along_y_},
-               of_y = {along_y_, along_x_, -along_y_, -along_x_};
+  const Float4 of_x = {c.along_x, -c.along_y, -c.along_x, c.along_y},
+               of_y = {c.along_y, c.along_x, -c.along_y, -c.along_x};
   for (std::size_t i = 0; i < n; ++i) {
     const auto slice = static_cast<std::size_t>(
-        std::clamp(static_cast<int>((h_[i] - bottom) / height * kSlices), 0, kSlices - 1));
-    slices[slice].add(x_[i] * of_x + y_[i] * of_y), ++count[slice];
-    if (h_[i] > top - 0.3f) top_x.add(x_[i]), top_y.add(y_[i]);
+        std::clamp(static_cast<int>((c.h[i] - bottom) / height * kSlices), 0, kSlices - 1));
+    slices[slice].add(c.x[i] * of_x + c.y[i] * of_y), ++count[slice];
+    if (c.h[i] > top - 0.3f) top_x.add(c.x[i]), top_y.add(c.y[i]);
   }
   for (const Box& slice : slices) whole.add(slice.ends);
   const float length = whole.size(0), width = whole.size(1);
@@ -204,12 +214,12 @@ void ClusterDescriber::describeOutline(Descriptor& d) const {
   at(d, Feature::kLogSurface) = std::log(returns * range * range);
 }
 
-void ClusterDescriber::describeSpread(Descriptor& d) const {
+void ClusterDescriber::describeSpread(const Members& c, Descriptor& d) {
   Moments moments;
-  const std::size_t stride = strideOf(x_.size(), kSpreadSample);
+  const std::size_t stride = strideOf(c.x.size(), kSpreadSample);
   // About the first return: differences of large numbers lose digits.
-  for (std::size_t i = 0; i < x_.size(); i += stride)
-    moments.add(x_[i] - x_[0], y_[i] - y_[0], z_[i] - z_[0]);
+  for (std::size_t i = 0; i < c.x.size(); i += stride)
+    moments.add(c.x[i] - c.x[0], c.y[i] - c.y[0], c.z[i] - c.z[0]);
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(moments.covariance());
   std::array<float, 3> spread{};  // largest first
   for (int k = 0; k < 3; ++k)
@@ -224,19 +234,19 @@ void ClusterDescriber::describeSpread(Descriptor& d) const {
 }
 
 /// Share of the least eigenvalue of the returns in cubes of 0.4 m: 0 for planes, 1/3 for leaves.
-void ClusterDescriber::describeRoughness(Descriptor& d) const {
+void ClusterDescriber::describeRoughness(const Members& c, Descriptor& d) {
   constexpr float kPerMeter = 2.5f;
   constexpr double kLeast = 5;  // returns in a cube
-  const std::size_t stride = strideOf(x_.size(), kRoughnessSample);
+  const std::size_t stride = strideOf(c.x.size(), kRoughnessSample);
   thread_local std::vector<std::uint64_t> memory;
   std::vector<std::uint64_t>& cube_of = memory;  // before the index of each return
   cube_of.clear();
   const auto cell = [&](float v, float origin) {
     return static_cast<std::uint64_t>(static_cast<int>((v - origin) * kPerMeter) + 512) & 1023u;
   };
-  const float x0 = x_[0] - 100, y0 = y_[0] - 100, z0 = z_[0] - 100;
-  for (std::size_t i = 0; i < x_.size(); i += stride)
-    cube_of.push_back(cell(x_[i], x0) << 52 | cell(y_[i], y0) << 42 | cell(z_[i], z0) << 32 | i);
+  const float x0 = c.x[0] - 100, y0 = c.y[0] - 100, z0 = c.z[0] - 100;
+  for (std::size_t i = 0; i < c.x.size(); i += stride)
+    cube_of.push_back(cell(c.x[i], x0) << 52 | cell(c.y[i], y0) << 42 | cell(c.z[i], z0) << 32 | i);
   std::sort(cube_of.begin(), cube_of.end());
   double least = 0, all = 0;
   for (std::size_t begin = 0; begin < cube_of.size();) {
@@ -246,7 +256,7 @@ void ClusterDescriber::describeRoughness(Descriptor& d) const {
     const std::size_t first = returnOf(cube_of[begin]);
     for (; end < cube_of.size() && cube_of[end] >> 32 == cube_of[begin] >> 32; ++end) {
       const std::size_t i = returnOf(cube_of[end]);
-      moments.add(x_[i] - x_[first], y_[i] - y_[first], z_[i] - z_[first]);
+      moments.add(c.x[i] - c.x[first], c.y[i] - c.y[first], c.z[i] - c.z[first]);
     }
     begin = end;
     if (moments.count < kLeast) continue;

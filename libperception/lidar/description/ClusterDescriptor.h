@@ -72,7 +72,7 @@ using Descriptor = std::array<float, kFeatures>;
 /// Names of the features, as in model files and tables.
 const std::array<const char*, kFeatures>& featureNames();
 
-/// Describes clusters of one scan. For one thread.
+/// Describes clusters of one scan. Several threads may ask.
 class ClusterDescriber {
  public:
   /// Borrows `found` and `cells`, the directions of its points.
@@ -80,19 +80,30 @@ class ClusterDescriber {
                    const DirectionCells& cells);
 
   /// `members`: indices into the obstacles, ascending; at least one.
-  Descriptor describe(const std::vector<std::uint32_t>& members);
+  Descriptor describe(const std::vector<std::uint32_t>& members) const;
 
  private:
+  /// The cluster that a thread describes.
+  struct Members {
+    RawVector<float> x, y, z, h;       ///< [m] offset from the sensor and height above ground
+    float along_x = 1, along_y = 0;    ///< direction of the longer side
+    std::vector<std::int32_t> number;  ///< of obstacles by cell: their last cluster
+    std::int32_t own = 0;              ///< number of this one
+    void begin(std::size_t obstacles);
+  };
+
   void rankIntensities(const LidarCloud& cloud);
   void sortByPlace();
-  void describeEdges(Descriptor& d);
-  void describeOutline(Descriptor& d) const;
-  void describeSpread(Descriptor& d) const;
-  void describeRoughness(Descriptor& d) const;
-  void describeDirections(const std::vector<std::uint32_t>& members, Descriptor& d) const;
+  static void describeEdges(Members& c, Descriptor& d);
+  static void describeOutline(const Members& c, Descriptor& d);
+  static void describeSpread(const Members& c, Descriptor& d);
+  static void describeRoughness(const Members& c, Descriptor& d);
+  void describeDirections(const Members& c, const std::vector<std::uint32_t>& members,
+                          Descriptor& d) const;
   void describeIntensity(const std::vector<std::uint32_t>& members, Descriptor& d) const;
-  void describeNeighbors(const std::vector<std::uint32_t>& members, Descriptor& d);
-  float nearestOther(std::uint32_t i, float within) const;
+  void describeNeighbors(const Members& c, const std::vector<std::uint32_t>& members,
+                         Descriptor& d) const;
+  float nearestOther(const Members& c, std::uint32_t i, float within) const;
 
   const LidarDetections& found_;
   const DirectionCells& cells_;
@@ -100,16 +111,11 @@ class ClusterDescriber {
   RawVector<float> intensity_;     ///< rank among the scan's obstacles, [0, 1]; empty: none
   RawVector<DirectionCells::Place> place_;  ///< of the obstacles
   /// Obstacles by cell of the plane.
-  RawVector<float> sorted_x_, sorted_y_;   ///< [m] from the sensor
-  std::vector<std::int32_t> sorted_mark_;  ///< last cluster that it was a member of
-  RawVector<std::uint32_t> rank_;          ///< of each obstacle
-  std::vector<std::uint32_t> start_;       ///< first of each cell
+  RawVector<float> sorted_x_, sorted_y_;  ///< [m] from the sensor
+  RawVector<std::uint32_t> rank_;         ///< of each obstacle
+  std::vector<std::uint32_t> start_;      ///< first of each cell
   int columns_ = 0, rows_ = 0;
   float x0_ = 0, y0_ = 0;  ///< [m] corner of the plane's cells
-  std::int32_t cluster_ = 0;
-  /// The members: offset from the sensor and height above ground [m].
-  RawVector<float> x_, y_, z_, h_;
-  float along_x_ = 1, along_y_ = 0;  ///< direction of the longer side
 };
 
 }  // namespace perception

@@ -111,14 +111,14 @@ void ClusterDescriber::sortByPlace() {
   std::partial_sum(start_.begin(), start_.end(), start_.begin());
   std::vector<std::uint32_t> next(start_.begin(), start_.end() - 1);
   sorted_x_.resize(n), sorted_y_.resize(n);
-  sorted_mark_.assign(n, 0);
   for (std::size_t k = 0; k < n; ++k) {
     const std::uint32_t at = rank_[k] = next[rank_[k]]++;
     sorted_x_[at] = dx_[k], sorted_y_[at] = dy_[k];
   }
 }
 
-void ClusterDescriber::describeDirections(const std::vector<std::uint32_t>& members,
+void ClusterDescriber::describeDirections(const Members& cluster,
+                                          const std::vector<std::uint32_t>& members,
                                           Descriptor& d) const {
   struct Row {
     int low = 1 << 20, high = -(1 << 20), hit = 0;
@@ -151,7 +151,7 @@ void ClusterDescriber::describeDirections(const std::vector<std::uint32_t>& memb
     row.hit += !mine[r * width + c];
     mine[r * width + c] = column_hit[c] = 1;
   }
-  const float range = std::hypot(at(d, Feature::kRange), z_[0]);
+  const float range = std::hypot(at(d, Feature::kRange), cluster.z[0]);
   CellCounts n;
   for (std::size_t r = 0; r < rows.size(); ++r) {
     const Row& row = rows[r];
@@ -191,13 +191,15 @@ void ClusterDescriber::describeIntensity(const std::vector<std::uint32_t>& membe
   at(d, Feature::kIntensityHigh) = quantile(values, 0.9);
 }
 
-void ClusterDescriber::describeNeighbors(const std::vector<std::uint32_t>& members, Descriptor& d) {
+void ClusterDescriber::describeNeighbors(const Members& c,
+                                         const std::vector<std::uint32_t>& members,
+                                         Descriptor& d) const {
   const std::size_t stride = 1 + (members.size() - 1) / kNeighborSample;
   constexpr float kTouch = 0.6f;  // [m]
   float least = kIsolated;
   int touching = 0, count = 0;
   for (std::size_t i = 0; i < members.size(); i += stride) {
-    const float other = nearestOther(members[i], std::max(least, kTouch));
+    const float other = nearestOther(c, members[i], std::max(least, kTouch));
     least = std::min(least, other);
     touching += other < kTouch, ++count;
   }
@@ -229,7 +231,7 @@ float nearestOf(const float* x, const float* y, const std::int32_t* mark, std::s
 }  // namespace
 
 /// Horizontal distance [m] to the nearest obstacle that is no member; at most `within`.
-float ClusterDescriber::nearestOther(std::uint32_t i, float within) const {
+float ClusterDescriber::nearestOther(const Members& cluster, std::uint32_t i, float within) const {
   constexpr float kRounding = 1e-3f;  // [m] more than floats round
   const float x = dx_[i], y = dy_[i];
   const int c = std::min(static_cast<int>((x - x0_) / kPlaneCell), columns_ - 1),
@@ -246,7 +248,7 @@ float ClusterDescriber::nearestOther(std::uint32_t i, float within) const {
                         end = start_[cells + static_cast<std::size_t>(last_column) + 1];
     if (first < end)
       best = nearestOf(sorted_x_.data() + first, sorted_y_.data() + first,
-                       sorted_mark_.data() + first, end - first, x, y, cluster_, best);
+                       cluster.number.data() + first, end - first, x, y, cluster.own, best);
   };
   // Cells from its own to the one in which something nearer may be, past a border.
   const auto cellsPast = [](float reach, float border) {

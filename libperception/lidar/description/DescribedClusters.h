@@ -1,7 +1,9 @@
 #pragma once
+#include <array>
 #include <functional>
 #include <vector>
 
+#include "libperception/lidar/classification/ClusterKind.h"
 #include "libperception/lidar/description/ClusterDescriptor.h"
 #include "libperception/lidar/segments/Segments.h"
 
@@ -10,10 +12,11 @@ namespace perception {
 struct DescribedCluster {
   Segment segment;  ///< `whole`: index into the same list
   Descriptor descriptor{};
+  std::array<double, kClusterKinds> probabilities{};  ///< left to the visitor
 };
 
-/// Called with every cluster before its parts; false: its parts are not wanted.
-using ClusterVisitor = std::function<bool(const DescribedCluster&)>;
+/// Called with every cluster before its parts, by several threads; false: its parts are not wanted.
+using ClusterVisitor = std::function<bool(DescribedCluster&)>;
 
 /// The segments of a scan that are large enough to be told by their shape, and their descriptors:
 /// 8 returns or more (assumed: the fewest of a person at 40 m from 64 beams), up to the length of

@@ -30,34 +30,66 @@ PERCEPTION_WIDER void findLengths(const float* __restrict x, const float* __rest
   }
 }
 
-class SegmentFinder {
+using Groups = std::vector<ReturnGroup>;
+
+/// The segments of a tree, as far as they are found.
+struct Found {
+  const SegmentVisitor& visit;
+  std::vector<Segment> segments;
+
+  /// Whether its parts are wanted.
+  bool add(const ReturnGroup& group, int whole) {
+    segments.push_back({group, whole});
+    return !visit || visit(segments.back());
+  }
+};
+
+}  // namespace
+
+class SegmentFinder::Trees {
  public:
-  SegmentFinder(const std::vector<float>& x, const std::vector<float>& y,
-                const std::vector<float>& height, double min_points, double max_size,
-                const std::vector<float>& weight, const SegmentVisitor& visit,
-                const std::optional<Vector3>& sensor, const LinkLength& link)
+  Trees(const std::vector<float>& x, const std::vector<float>& y, const std::vector<float>& height,
+        double min_points, double max_size, const std::vector<float>& weight,
+        const std::optional<Vector3>& sensor, const LinkLength& link)
       : x_(x),
         y_(y),
         height_(height),
         weight_(weight),
-        visit_(visit),
-        sensor_(sensor),
         link_(link),
         min_points_(min_points - 1e-6),
         max_size_(max_size),
         length_(x.size()) {
     findLengths(x.data(), y.data(), x.size(), link, length_.data());
-  }
-
-  std::vector<Segment> find() {
     std::vector<std::uint32_t> all(x_.size());
     std::iota(all.begin(), all.end(), 0u);
-    if (sensor_ && !all.empty()) {
-      addWholes(all);
+    constexpr double kLeastOfColumn = 4;  // returns (assumed)
+    const double least = sensor ? std::min(min_points_, kLeastOfColumn - 1e-6) : min_points_;
+    groups_ = groupsOf(all, kLinkLevels[0], least);
+    if (sensor && !all.empty()) {
+      joinSurfaces(*sensor);
     } else {
-      addParts(all, -1, 0);
+      for (std::uint32_t g = 0; g < groups_.size(); ++g) trees_.push_back({g});
     }
-    return std::move(segments_);
+  }
+
+  std::size_t count() const { return trees_.size(); }
+
+  /// The groups of the first level; surfaces that the distance of their columns has cut into
+  /// several are wholes, too.
+  std::vector<Segment> find(std::size_t tree, const SegmentVisitor& visit) const {
+    const std::vector<std::uint32_t>& members = trees_[tree];
+    Found found{visit, {}};
+    int whole = -1;
+    if (members.size() > 1) {
+      const ReturnGroup joined = joinedOf(members);
+      if (weightOf(joined) >= min_points_ && sizeOf(joined) <= max_size_) {
+        whole = 0;
+        if (!found.add(joined, -1)) return std::move(found.segments);
+      }
+    }
+    for (const std::uint32_t m : members)
+      if (weightOf(groups_[m]) >= min_points_) addGroup(groups_[m], whole, 0, found);
+    return std::move(found.segments);
   }
 
  private:
@@ -95,62 +127,47 @@ class SegmentFinder {
   }
 
   /// `of_longer`: `members` are longer than any whole.
-  void addParts(const ReturnGroup& members, int whole, std::size_t level, bool of_longer = false) {
+  void addParts(const ReturnGroup& members, int whole, std::size_t level, Found& found,
+                bool of_longer = false) const {
     if (level == std::size(kLinkLevels)) return;
     const auto groups = groupsOf(members, kLinkLevels[level], min_points_);
-    if (whole >= 0 && groups.size() < 2) return addParts(members, whole, level + 1);
+    if (whole >= 0 && groups.size() < 2) return addParts(members, whole, level + 1, found);
     for (const ReturnGroup& group : groups)
-      if (!of_longer || !isCutOut(group, members)) addGroup(group, whole, level);
+      if (!of_longer || !isCutOut(group, members)) addGroup(group, whole, level, found);
   }
 
   /// A group of a level, and its parts.
-  void addGroup(const ReturnGroup& group, int whole, std::size_t level) {
-    if (sizeOf(group) > max_size_) return addParts(group, whole, level + 1, true);
-    const auto number = static_cast<int>(segments_.size());
-    if (add(group, whole)) addParts(group, number, level + 1);
+  void addGroup(const ReturnGroup& group, int whole, std::size_t level, Found& found) const {
+    if (sizeOf(group) > max_size_) return addParts(group, whole, level + 1, found, true);
+    const auto number = static_cast<int>(found.segments.size());
+    if (found.add(group, whole)) addParts(group, number, level + 1, found);
   }
 
-  /// Whether its parts are wanted.
-  bool add(const ReturnGroup& group, int whole) {
-    segments_.push_back({group, whole});
-    return !visit_ || visit_(segments_.back());
-  }
-
-  /// The groups of the first level; surfaces that the distance of their columns has cut into
-  /// several are wholes, too.
-  void addWholes(const ReturnGroup& all) {
-    constexpr double kLeastOfColumn = 4;  // returns (assumed)
-    const auto groups = groupsOf(all, kLinkLevels[0], std::min(min_points_, kLeastOfColumn - 1e-6));
+  /// Makes trees of groups and of surfaces, each in the place of its first group.
+  void joinSurfaces(const Vector3& sensor) {
     const ReturnPlaces places = {x_, y_, height_};
-    directions_.emplace(places, *sensor_);
-    step_ = azimuthStep(*directions_, groups);
-    const auto surfaces = grazedSurfaces(places, groups, *sensor_, *directions_, step_);
-    std::vector<char> placed(groups.size(), 0);
-    std::vector<const std::vector<std::uint32_t>*> surface_of(groups.size(), nullptr);
+    directions_.emplace(places, sensor);
+    step_ = azimuthStep(*directions_, groups_);
+    const auto surfaces = grazedSurfaces(places, groups_, sensor, *directions_, step_);
+    std::vector<char> placed(groups_.size(), 0);
+    std::vector<const std::vector<std::uint32_t>*> surface_of(groups_.size(), nullptr);
     for (const auto& surface : surfaces)
       for (const std::uint32_t g : surface) surface_of[g] = &surface;
-    for (std::uint32_t g = 0; g < groups.size(); ++g) {
+    for (std::uint32_t g = 0; g < groups_.size(); ++g) {
       if (placed[g]) continue;
-      int whole = -1;
-      bool parts_wanted = true;
-      std::vector<std::uint32_t> members = {g};
-      if (surface_of[g] != nullptr) {
-        ReturnGroup joined;
-        for (const std::uint32_t m : *surface_of[g]) {
-          const auto middle = joined.insert(joined.end(), groups[m].begin(), groups[m].end());
-          std::inplace_merge(joined.begin(), middle, joined.end());
-        }
-        members = *surface_of[g];
-        if (weightOf(joined) >= min_points_ && sizeOf(joined) <= max_size_) {
-          whole = static_cast<int>(segments_.size());
-          parts_wanted = add(joined, -1);
-        }
-      }
-      for (const std::uint32_t m : members) {
-        placed[m] = 1;
-        if (parts_wanted && weightOf(groups[m]) >= min_points_) addGroup(groups[m], whole, 0);
-      }
+      trees_.push_back(surface_of[g] ? *surface_of[g] : std::vector<std::uint32_t>{g});
+      for (const std::uint32_t m : trees_.back()) placed[m] = 1;
     }
+  }
+
+  /// The returns of several groups, ascending.
+  ReturnGroup joinedOf(const std::vector<std::uint32_t>& members) const {
+    ReturnGroup joined;
+    for (const std::uint32_t m : members) {
+      const auto middle = joined.insert(joined.end(), groups_[m].begin(), groups_[m].end());
+      std::inplace_merge(joined.begin(), middle, joined.end());
+    }
+    return joined;
   }
 
   /// Whether one beam, or up to three columns of beams, have cut a part out of a surface that goes
@@ -202,24 +219,44 @@ class SegmentFinder {
   }
 
   const std::vector<float>&x_, &y_, &height_, &weight_;
-  const SegmentVisitor& visit_;
-  const std::optional<Vector3>& sensor_;
-  const LinkLength& link_;
+  const LinkLength link_;
   const double min_points_, max_size_;
   RawVector<double> length_;  ///< [m] link of each return, at the first level's share of 1
-  std::optional<ReturnDirections> directions_;  ///< with the sensor's place
-  double step_ = 0;                             ///< [rad] of azimuth between columns; 0: unknown
-  std::vector<Segment> segments_;
+  Groups groups_;             ///< of the first level
+  std::vector<std::vector<std::uint32_t>> trees_;  ///< their groups
+  std::optional<ReturnDirections> directions_;     ///< with the sensor's place
+  double step_ = 0;                                ///< [rad] of azimuth between columns; 0: unknown
 };
 
-}  // namespace
+SegmentFinder::SegmentFinder(const std::vector<float>& x, const std::vector<float>& y,
+                             const std::vector<float>& height, double min_points, double max_size,
+                             const std::vector<float>& weight, const std::optional<Vector3>& sensor,
+                             const LinkLength& link)
+    : trees_(std::make_unique<const Trees>(x, y, height, min_points, max_size, weight, sensor,
+                                           link)) {}
+
+SegmentFinder::~SegmentFinder() = default;
+
+std::size_t SegmentFinder::trees() const { return trees_->count(); }
+
+std::vector<Segment> SegmentFinder::find(std::size_t tree, const SegmentVisitor& visit) const {
+  return trees_->find(tree, visit);
+}
 
 std::vector<Segment> findSegments(const std::vector<float>& x, const std::vector<float>& y,
                                   const std::vector<float>& height, double min_points,
                                   double max_size, const std::vector<float>& weight,
-                                  const SegmentVisitor& visit, const std::optional<Vector3>& sensor,
-                                  const LinkLength& link) {
-  return SegmentFinder(x, y, height, min_points, max_size, weight, visit, sensor, link).find();
+                                  const std::optional<Vector3>& sensor, const LinkLength& link) {
+  const SegmentFinder finder(x, y, height, min_points, max_size, weight, sensor, link);
+  std::vector<Segment> segments;
+  for (std::size_t tree = 0; tree < finder.trees(); ++tree) {
+    const auto first = static_cast<int>(segments.size());
+    for (Segment& segment : finder.find(tree)) {
+      if (segment.whole >= 0) segment.whole += first;
+      segments.push_back(std::move(segment));
+    }
+  }
+  return segments;
 }
 
 }  // namespace perception

@@ -6,6 +6,7 @@
 #include <set>
 #include <string>
 
+#include "libperception/core/system/Parallel.h"
 #include "libperception/lidar/description/DescribedClusters.h"
 #include "tests/support/ClusterScenes.h"
 
@@ -275,6 +276,33 @@ TEST(DescribedClusters, PartsReferToTheirWhole) {
   EXPECT_EQ(clusters[0].segment.whole, -1);
   EXPECT_EQ(clusters[1].segment.whole, 0);
   EXPECT_EQ(clusters[2].segment.whole, 0);
+}
+
+TEST(DescribedClusters, AreTheSameWhateverTheNumberOfThreads) {
+  SolidScene scene;  // pairs of persons: a whole of two parts each, in different places
+  for (int k = -15; k <= 15; ++k) {
+    const double angle = 0.1 * k, range = 14 + 0.1 * k;
+    for (const double side : {-0.36, 0.36})
+      scene.cylinders.push_back({{range * std::cos(angle) - side * std::sin(angle),
+                                  range * std::sin(angle) + side * std::cos(angle)},
+                                 0.25,
+                                 0,
+                                 1.7 + 0.01 * k});
+  }
+  Scan scan(scene);
+  const DirectionCells cells(scan.found.points);
+  const auto with = [&](std::size_t threads) {
+    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
+    return describedClusters(scan.found, scan.cloud(), cells);
+  };
+  const auto one = with(1), two = with(2);
+  ASSERT_GT(one.size(), 60u);
+  ASSERT_EQ(two.size(), one.size());
+  for (std::size_t k = 0; k < one.size(); ++k) {
+    EXPECT_EQ(two[k].segment.points, one[k].segment.points) << k;
+    EXPECT_EQ(two[k].segment.whole, one[k].segment.whole) << k;
+    EXPECT_EQ(two[k].descriptor, one[k].descriptor) << k;
+  }
 }
 
 }  // namespace

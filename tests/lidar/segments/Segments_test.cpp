@@ -129,7 +129,9 @@ TEST(Segments, PartsThatAreNotWantedAreNotLookedFor) {
   std::vector<Segment> visited;
   const auto visit = [&](bool wanted) {
     visited.clear();
-    return findSegments(o.x, o.y, o.height, 8, 20, {}, [&visited, wanted](const Segment& s) {
+    const SegmentFinder finder(o.x, o.y, o.height, 8, 20, o.trust, {}, {});
+    EXPECT_EQ(finder.trees(), 1u);
+    return finder.find(0, [&visited, wanted](const Segment& s) {
       visited.push_back(s);
       return wanted;
     });
@@ -167,7 +169,7 @@ TEST(Segments, ARowOfBeamsOnAWallIsNothingOfItsOwn) {
       if (height > 0.3 && height < 3) wall.add(range * std::sin(azimuth), 9, height);
     }
   }
-  const auto segments = findSegments(wall.x, wall.y, wall.height, 8, 20, wall.trust, {}, sensor);
+  const auto segments = findSegments(wall.x, wall.y, wall.height, 8, 20, wall.trust, sensor);
   for (const Segment& segment : segments) {
     double least = 90, most = -90;
     for (const std::uint32_t i : segment.points) {
@@ -199,7 +201,7 @@ Obstacles wallAndColumns(int columns) {
 TEST(Segments, UpToThreeColumnsOfALongSurfaceAreNothingOfTheirOwn) {
   const auto found = [](int columns) {
     const Obstacles o = wallAndColumns(columns);
-    return findSegments(o.x, o.y, o.height, 8, 20, o.trust, {}, Vector3(0, 0, 1)).size();
+    return findSegments(o.x, o.y, o.height, 8, 20, o.trust, Vector3(0, 0, 1)).size();
   };
   EXPECT_EQ(found(2), 0u);
   EXPECT_EQ(found(3), 0u);
