@@ -105,8 +105,8 @@ void LogRun::read(const std::function<void(const Scene&)>& keep) {
     while (const auto scene = pipeline_.next(end)) {
       events_.release([&] { put(*scene); });
       keep(*scene);
+      if (pipeline_.isBehind()) events_.hold();
     }
-    if (pipeline_.isBehind()) events_.hold();
     putWeather();
     putLedger();
   };

@@ -231,18 +231,20 @@ void Pipeline::processFrame(std::size_t sensor, SensorFrame& frame) {
     if (setup_.sensors[sensor].params.modality == Modality::kLidar)
       frame.causes.wakes = wakes_.at(frame.stamp);
     MeasurementScan scan = runAlone([&] { return scan_maker_.measure(sensor, frame); });
-    catchUp();
     const double share = conditions_.apply(sensor, scan, health_.seenShare(sensor));
     wakes_.apply(sensor, scan);
     watch_.addFrame(sensor, stamp, &scan);
     for (PipelineObserver* o : observers_) o->onFrame(frame), o->onScan(scan);
     const auto returns = std::exchange(scan.returns, nullptr);
-    if (grid_lags_) {
-      const auto kept = std::make_shared<const SensorFrame>(std::move(frame));
-      grid_work_.add([this, kept, returns] { addToGrid(*kept, returns.get()); });
-      runAlone([&] { filter(sensor, scan, share); });
+    if (returns != nullptr && !grid_lags_) {
+      runBoth([&] { filter(sensor, scan, share); }, [&] { addToGrid(frame, *returns); });
     } else {
-      runBoth([&] { filter(sensor, scan, share); }, [&] { addToGrid(frame, returns.get()); });
+      if (returns != nullptr) {
+        catchUp();
+        const auto kept = std::make_shared<const SensorFrame>(std::move(frame));
+        grid_work_.add([this, kept, returns] { addToGrid(*kept, *returns); });
+      }
+      runAlone([&] { filter(sensor, scan, share); });
     }
   } else {
     watch_.addFrame(sensor, stamp, nullptr);
@@ -262,10 +264,10 @@ void Pipeline::filter(std::size_t sensor, MeasurementScan& scan, double share) {
                   share);
 }
 
-void Pipeline::addToGrid(const SensorFrame& frame, const PlacedReturns* returns) {
-  if (!safety_ || returns == nullptr) return;
+void Pipeline::addToGrid(const SensorFrame& frame, const PlacedReturns& returns) {
+  if (!safety_) return;
   const auto scope = timing_.stage("grid");
-  safety_->add(frame, *returns);
+  safety_->add(frame, returns);
 }
 
 EgoState Pipeline::egoAt(Stamp stamp) {

@@ -56,8 +56,9 @@ class Pipeline {
 
   /// Lets the grid of a scan and the way ahead be worked on while the next scan is prepared, where
   /// there are two threads: of a log, whose scenes need not come at once. Each then comes when the
-  /// next scan is about to go into the filter, and is the same. grid() is not to be asked for until
-  /// the log has ended. No effect on scenes at a fixed rate or with a lag.
+  /// next lidar scan is about to go into the grid or the next scene is due, and is the same; events
+  /// after it are held until then (EventLog::hold()). grid() is not to be asked for until the log
+  /// has ended. No effect on scenes with a lag.
   void letGridLag();
   /// Whether a scene is due that did not come yet, since the grid lags.
   bool isBehind() const { return late_.has_value(); }
@@ -106,10 +107,13 @@ class Pipeline {
   EgoState egoAt(Stamp stamp);
   /// `share`: what weather has left of the sensor's P_D.
   void filter(std::size_t sensor, MeasurementScan& scan, double share);
-  void addToGrid(const SensorFrame& frame, const PlacedReturns* returns);
+  void addToGrid(const SensorFrame& frame, const PlacedReturns& returns);
   void addOutput(const EgoState& ego, std::int64_t frame);
   void findPath(OutputSchedule::Instant& instant);
   void putOutput(OutputSchedule::Instant instant);
+  void tellOf(const OutputSchedule::Instant& instant);
+  Scene sceneOf(const EgoState& ego, std::int64_t frame);
+  void putScene(Scene scene, const PathAhead& path);
   void catchUp();
   void makeScenes(std::optional<Stamp> now);
   void restartTracks();
@@ -139,8 +143,8 @@ class Pipeline {
   Stamp last_stamp_;
   std::vector<PipelineObserver*> observers_;
   bool grid_lags_ = false;
-  std::optional<OutputSchedule::Instant> late_;  ///< waits for its path
-  WorkBehind grid_work_;                         ///< on safety_ and late_
+  std::optional<std::pair<OutputSchedule::Instant, Scene>> late_;  ///< wait for the path
+  WorkBehind grid_work_;                                           ///< on safety_ and late_
 };
 
 }  // namespace perception

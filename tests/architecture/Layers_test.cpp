@@ -30,7 +30,7 @@ const std::vector<std::string> kOnlyInSources = {"octomap/", "opencv2/", "GL/", 
 
 // What core may know besides the standard library.
 const std::vector<std::string> kLibrariesOfCore = {"Eigen/", "unsupported/Eigen/", "fmt/",
-                                                   "Random123/"};
+                                                   "Random123/", "tbb/"};
 
 bool beginsWith(const std::string& text, const std::string& start) {
   return text.rfind(start, 0) == 0;
@@ -100,7 +100,7 @@ std::string faultOf(const SourceFile& file, const Include& include) {
     return "belongs into a source file";
   if (module == "core" && include.path.find('/') != std::string::npos &&
       !beginsWithAny(include.path, kLibrariesOfCore) && !beginsWith(include.path, "sys/")) {
-    return "core knows Eigen, fmt, Random123 and the standard library";
+    return "core knows Eigen, fmt, Random123, TBB and the standard library";
   }
   return "";
 }
@@ -182,7 +182,7 @@ TEST(Layers, TheCheckerFindsWhatIsForbidden) {
   EXPECT_EQ(faultOfLine("gui-offscreen/Labels.h", "#include <opencv2/core.hpp>"),
             "belongs into a source file");
   EXPECT_EQ(faultOfLine("libperception/core/A.cpp", "#include <nlohmann/json.hpp>"),
-            "core knows Eigen, fmt, Random123 and the standard library");
+            "core knows Eigen, fmt, Random123, TBB and the standard library");
   EXPECT_EQ(faultOfLine("libperception/newcomer/A.h", "#include <vector>"),
             "the module is not in the table of layers");
 }
