@@ -105,7 +105,6 @@ void LogRun::read(const std::function<void(const Scene&)>& keep) {
     while (const auto scene = pipeline_.next(end)) {
       events_.release([&] { put(*scene); });
       keep(*scene);
-      if (pipeline_.isBehind()) events_.hold();
     }
     putWeather();
     putLedger();

@@ -230,7 +230,7 @@ void Pipeline::processFrame(std::size_t sensor, SensorFrame& frame) {
     inputs_.apply(frame);
     if (setup_.sensors[sensor].params.modality == Modality::kLidar)
       frame.causes.wakes = wakes_.at(frame.stamp);
-    MeasurementScan scan = runAlone([&] { return scan_maker_.measure(sensor, frame); });
+    MeasurementScan scan = scan_maker_.measure(sensor, frame);
     const double share = conditions_.apply(sensor, scan, health_.seenShare(sensor));
     wakes_.apply(sensor, scan);
     watch_.addFrame(sensor, stamp, &scan);
@@ -239,12 +239,8 @@ void Pipeline::processFrame(std::size_t sensor, SensorFrame& frame) {
     if (returns != nullptr && !grid_lags_) {
       runBoth([&] { filter(sensor, scan, share); }, [&] { addToGrid(frame, *returns); });
     } else {
-      if (returns != nullptr) {
-        catchUp();
-        const auto kept = std::make_shared<const SensorFrame>(std::move(frame));
-        grid_work_.add([this, kept, returns] { addToGrid(*kept, *returns); });
-      }
-      runAlone([&] { filter(sensor, scan, share); });
+      if (returns != nullptr) lagBehind(std::move(frame), returns);
+      filter(sensor, scan, share);
     }
   } else {
     watch_.addFrame(sensor, stamp, nullptr);

@@ -56,12 +56,10 @@ class Pipeline {
 
   /// Lets the grid of a scan and the way ahead be worked on while the next scan is prepared, where
   /// there are two threads: of a log, whose scenes need not come at once. Each then comes when the
-  /// next lidar scan is about to go into the grid or the next scene is due, and is the same; events
-  /// after it are held until then (EventLog::hold()). grid() is not to be asked for until the log
-  /// has ended. No effect on scenes with a lag.
+  /// scene after the next one is due, and is the same; events after it are held until then
+  /// (EventLog::hold()). grid() is not to be asked for until the log has ended. No effect on scenes
+  /// with a lag.
   void letGridLag();
-  /// Whether a scene is due that did not come yet, since the grid lags.
-  bool isBehind() const { return late_.has_value(); }
 
   void add(const mrpt::obs::CObservation& observation) { add(observation, nullptr); }
   /// One that is not needed any more: its points are moved.
@@ -108,13 +106,14 @@ class Pipeline {
   /// `share`: what weather has left of the sensor's P_D.
   void filter(std::size_t sensor, MeasurementScan& scan, double share);
   void addToGrid(const SensorFrame& frame, const PlacedReturns& returns);
+  void lagBehind(SensorFrame frame, std::shared_ptr<const PlacedReturns> returns);
   void addOutput(const EgoState& ego, std::int64_t frame);
   void findPath(OutputSchedule::Instant& instant);
   void putOutput(OutputSchedule::Instant instant);
   void tellOf(const OutputSchedule::Instant& instant);
   Scene sceneOf(const EgoState& ego, std::int64_t frame);
   void putScene(Scene scene, const PathAhead& path);
-  void catchUp();
+  void catchUp(std::size_t most = 0);
   void makeScenes(std::optional<Stamp> now);
   void restartTracks();
 
@@ -143,8 +142,14 @@ class Pipeline {
   Stamp last_stamp_;
   std::vector<PipelineObserver*> observers_;
   bool grid_lags_ = false;
-  std::optional<std::pair<OutputSchedule::Instant, Scene>> late_;  ///< wait for the path
-  WorkBehind grid_work_;                                           ///< on safety_ and late_
+  struct LateScene {
+    OutputSchedule::Instant instant;
+    Scene scene;
+    std::size_t work;  ///< number of the work that finds its way
+  };
+  std::deque<LateScene> late_;
+  WorkBehind grid_work_;                   ///< on safety_ and the instants of late_
+  std::deque<std::size_t> scans_in_work_;  ///< numbers of the work that adds them to the grid
 };
 
 }  // namespace perception

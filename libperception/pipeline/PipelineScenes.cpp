@@ -7,15 +7,18 @@
 
 namespace perception {
 
+/// Scans of lidars, and scenes, that the grid may be behind.
+static constexpr std::size_t kMostLate = 2;
+
 void Pipeline::letGridLag() { grid_lags_ = safety_ && canRunBoth() && setup_.run.output_lag <= 0; }
 
 void Pipeline::addOutput(const EgoState& ego, std::int64_t frame) {
   OutputSchedule::Instant instant{ego, frame, {}};
   if (grid_lags_) {
-    catchUp();
-    late_ = {std::move(instant), sceneOf(ego, frame)};
+    catchUp(kMostLate - 1);
+    LateScene& late = late_.emplace_back(LateScene{std::move(instant), sceneOf(ego, frame), 0});
+    late.work = grid_work_.add([this, &late] { findPath(late.instant); });
     events_.hold();
-    grid_work_.add([this] { findPath(late_->first); });
   } else {
     findPath(instant);
     putOutput(std::move(instant));
@@ -40,13 +43,28 @@ void Pipeline::putOutput(OutputSchedule::Instant instant) {
   makeScenes(stamp);
 }
 
-/// Waits for the grid, and completes the scene that is late.
-void Pipeline::catchUp() {
-  grid_work_.wait();
-  if (!late_) return;
-  auto [instant, scene] = *std::exchange(late_, std::nullopt);
-  tellOf(instant);
-  putScene(std::move(scene), instant.path);
+/// Lets a scan of a lidar go into the grid behind this thread, once that is two scans behind at
+/// most.
+void Pipeline::lagBehind(SensorFrame frame, std::shared_ptr<const PlacedReturns> returns) {
+  if (scans_in_work_.size() == kMostLate) {
+    grid_work_.wait(scans_in_work_.front());
+    scans_in_work_.pop_front();
+  }
+  const auto kept = std::make_shared<const SensorFrame>(std::move(frame));
+  scans_in_work_.push_back(
+      grid_work_.add([this, kept, returns = std::move(returns)] { addToGrid(*kept, *returns); }));
+}
+
+/// Completes the scenes that are late but for the newest `most`; waits for their ways.
+void Pipeline::catchUp(std::size_t most) {
+  if (most == 0) grid_work_.wait();
+  while (late_.size() > most) {
+    grid_work_.wait(late_.front().work);
+    LateScene late = std::move(late_.front());
+    late_.pop_front();
+    tellOf(late.instant);
+    putScene(std::move(late.scene), late.instant.path);
+  }
 }
 
 Scene Pipeline::sceneOf(const EgoState& ego, std::int64_t frame) {
@@ -76,7 +94,7 @@ std::set<std::uint64_t> Pipeline::livingObjects() {
     for (const SceneObject& object : scene.objects) ids.insert(object.id);
   };
   for (const Scene& scene : ready_) add(scene);
-  if (late_) add(late_->second);
+  for (const LateScene& late : late_) add(late.scene);
   return ids;
 }
 

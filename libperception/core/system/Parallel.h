@@ -3,13 +3,14 @@
 #include <tbb/parallel_for.h>
 #include <tbb/partitioner.h>
 #include <tbb/task_arena.h>
-#include <tbb/task_group.h>
 
+#include <condition_variable>
 #include <cstddef>
 #include <deque>
 #include <exception>
 #include <functional>
 #include <mutex>
+#include <thread>
 #include <utility>
 
 #ifdef __SANITIZE_THREAD__
@@ -78,59 +79,73 @@ inline bool canRunBoth() {
   return tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism) > 1;
 }
 
-/// f(). While it waits for its own loops, its thread takes no work of a WorkBehind.
-template <class Function>
-auto runAlone(const Function& f) {
-  return tbb::this_task_arena::isolate(f);
-}
-
-/// Does what is added in that order, on a second thread if there is one; else in wait(). Only one
-/// thread may call add() and wait(). The destructor waits, too.
+/// Does what is added on a thread of its own, in that order. Only one thread may call add() and
+/// wait(). The destructor waits, too.
 class WorkBehind {
  public:
   WorkBehind() = default;
   WorkBehind(const WorkBehind&) = delete;
   WorkBehind& operator=(const WorkBehind&) = delete;
-  ~WorkBehind() { group_.wait(); }
-
-  void add(std::function<void()> work) {
-    const std::lock_guard lock(mutex_);
-    waiting_.push_back(std::move(work));
-    if (!std::exchange(works_, true)) group_.run([this] { workAll(); });
+  ~WorkBehind() {
+    if (!thread_.joinable()) return;
+    change([this] { ends_ = true; });
+    thread_.join();
   }
-  /// Returns when all is done. Rethrows what the first function that failed threw; those added
-  /// after it, before this call, are skipped.
-  void wait() {
-    group_.wait();
-    const std::lock_guard lock(mutex_);
+
+  /// The number of functions that were added so far.
+  std::size_t add(std::function<void()> work) {
+    change([&] { waiting_.push_back(std::move(work)); });
+    if (!thread_.joinable()) thread_ = std::thread([this] { workAll(); });
+    return ++added_;
+  }
+  /// Returns when the first `count` of all are done. Rethrows what the first function that failed
+  /// threw; those added after it, before this call, are skipped.
+  void wait(std::size_t count) {
+    std::unique_lock lock(mutex_);
+    changed_.wait(lock, [&] { return done_ >= count; });
     if (fault_) std::rethrow_exception(std::exchange(fault_, nullptr));
   }
+  void wait() { wait(added_); }
 
  private:
+  template <class Function>
+  void change(const Function& f) {
+    {
+      const std::lock_guard lock(mutex_);
+      f();
+    }
+    changed_.notify_all();
+  }
   void workAll() {
-    order_.enter();
-    for (std::unique_lock lock(mutex_);; lock.lock()) {
-      if (fault_) waiting_.clear();
-      works_ = !waiting_.empty();
-      if (!works_) return;
+    for (;;) {
+      std::unique_lock lock(mutex_);
+      changed_.wait(lock, [this] { return ends_ || !waiting_.empty(); });
+      if (waiting_.empty()) return;
       const auto work = std::move(waiting_.front());
       waiting_.pop_front();
+      const bool skipped = fault_ != nullptr;
       lock.unlock();
+      std::exception_ptr fault;
       try {
-        work();
+        if (!skipped) work();
       } catch (...) {
-        const std::lock_guard faulty(mutex_);
-        fault_ = std::current_exception();
+        fault = std::current_exception();
       }
+      change([&] {
+        ++done_;
+        if (fault) fault_ = fault;
+      });
     }
   }
 
   std::mutex mutex_;
+  std::condition_variable changed_;
   std::deque<std::function<void()>> waiting_;
-  bool works_ = false;
+  std::size_t done_ = 0;
   std::exception_ptr fault_;
-  LoopOrder order_;  // the members above are made before workAll() runs
-  tbb::task_group group_;
+  bool ends_ = false;
+  std::size_t added_ = 0;  // of the thread that adds
+  std::thread thread_;
 };
 
 }  // namespace perception

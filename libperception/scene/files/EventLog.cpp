@@ -29,7 +29,7 @@ void EventLog::add(std::optional<Stamp> stamp, const std::string& kind, const st
   ++counts_[kind];
   if (fields.is_null()) fields = Fields::object();
   Event event{stamp, kind, message, std::move(fields), severity};
-  holds_ ? held_.push_back(std::move(event)) : put(std::move(event));
+  held_.empty() || lets_through_ ? put(std::move(event)) : held_.back().push_back(std::move(event));
 }
 
 void EventLog::put(Event event) {
@@ -42,9 +42,12 @@ void EventLog::put(Event event) {
 }
 
 void EventLog::release(const std::function<void()>& late) {
-  holds_ = false;
+  lets_through_ = true;
   late();
-  for (Event& event : std::exchange(held_, {})) put(std::move(event));
+  lets_through_ = false;
+  if (held_.empty()) return;
+  for (Event& event : held_.front()) put(std::move(event));
+  held_.pop_front();
 }
 
 void EventLog::warn(std::optional<Stamp> stamp, const std::string& kind, const std::string& message,

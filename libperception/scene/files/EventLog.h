@@ -1,5 +1,6 @@
 #pragma once
 #include <cstdint>
+#include <deque>
 #include <functional>
 #include <map>
 #include <nlohmann/json.hpp>
@@ -73,9 +74,11 @@ class EventLog {
   using Listener = std::function<void(std::optional<Stamp>, const nlohmann::ordered_json&)>;
   void tell(Listener listener) { listener_ = std::move(listener); }
 
-  /// Lets the events from now on wait for release(), for what comes before them is late.
-  void hold() { holds_ = true; }
-  /// Calls `late`, whose events come first, and then writes those that wait. The next do not wait.
+  /// Something is late: the events from now on wait for release(), each time that this is called
+  /// for one release() more.
+  void hold() { held_.emplace_back(); }
+  /// Calls `late`, whose events come first, and then writes those that waited for it. Without a
+  /// hold() only the former.
   void release(const std::function<void()>& late);
 
   /// Number of events by kind, including those not stored.
@@ -107,8 +110,8 @@ class EventLog {
 
   std::size_t kept_per_kind_;
   std::vector<Event> events_;
-  bool holds_ = false;
-  std::vector<Event> held_;
+  bool lets_through_ = false;            ///< within release()
+  std::deque<std::vector<Event>> held_;  ///< by hold(), oldest first
   std::optional<OutputFile> file_;
   Stamp first_stamp_;  ///< of the file
   std::map<std::string, std::uint64_t> counts_;

@@ -3,9 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
+#include <future>
 #include <numeric>
 #include <stdexcept>
-#include <thread>
 #include <vector>
 
 namespace perception {
@@ -29,34 +29,29 @@ TEST(RunBoth, AnExceptionOfEitherReachesTheCaller) {
 }
 
 TEST(WorkBehind, IsDoneInTheOrderInWhichItIsGiven) {
-  for (const std::size_t threads : {1, 2}) {
-    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
-    EXPECT_EQ(canRunBoth(), threads == 2);
-    std::vector<int> done, wanted(1000);
-    std::iota(wanted.begin(), wanted.end(), 0);
-    WorkBehind work;
-    for (const int k : wanted) {
-      work.add([&done, k] { done.push_back(k); });
-      if (k % 100 != 99) continue;
-      work.wait();
-      EXPECT_EQ(done.size(), static_cast<std::size_t>(k) + 1);
-    }
-    EXPECT_EQ(done, wanted);
+  std::vector<int> done, wanted(1000);
+  std::iota(wanted.begin(), wanted.end(), 0);
+  WorkBehind work;
+  for (const int k : wanted) {
+    EXPECT_EQ(work.add([&done, k] { done.push_back(k); }), static_cast<std::size_t>(k) + 1);
+    if (k % 100 != 99) continue;
+    work.wait();
+    EXPECT_EQ(done.size(), static_cast<std::size_t>(k) + 1);
   }
+  EXPECT_EQ(done, wanted);
 }
 
-TEST(WorkBehind, IsNotDoneByALoopThatRunsAlone) {
-  const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, 2);
-  const auto giver = std::this_thread::get_id();
+TEST(WorkBehind, TheFirstMayBeWaitedForAlone) {
   WorkBehind work;
-  for (int k = 0; k < 50; ++k) {
-    bool alone = true;
-    std::atomic<bool> taken = false;
-    work.add([&] { taken = std::this_thread::get_id() == giver; });
-    runAlone([&] { parallelFor(100, [](std::size_t) {}), alone = !taken; });
-    EXPECT_TRUE(alone);
-    work.wait();
-  }
+  std::atomic<int> done = 0;
+  std::promise<void> go;
+  const std::size_t first = work.add([&] { ++done; });
+  work.add([&, gone = go.get_future().share()] { gone.wait(), ++done; });
+  work.wait(first);  // else for ever
+  EXPECT_EQ(done, 1);
+  go.set_value();
+  work.wait();
+  EXPECT_EQ(done, 2);
 }
 
 TEST(WorkBehind, ThrowsWhatTheFirstThrewAndLeavesOutTheRest) {
