@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "libperception/lidar/LidarFrontEnd.h"
+#include "libperception/lidar/description/ClusterDescriptor.h"
 #include "tests/support/SyntheticCloud.h"
 
 namespace perception::test {
@@ -42,5 +43,27 @@ inline std::vector<std::uint32_t> obstaclesWhere(
       members.push_back(static_cast<std::uint32_t>(i));
   return members;
 }
+
+/// A scan of a scene and its obstacles.
+struct ObstacleScan {
+  SensorFrame frame;
+  LidarDetections found;
+
+  explicit ObstacleScan(const SolidScene& scene, const SpinningLidar& lidar = narrowLidar())
+      : frame(castScan(scene, lidar)), found(plainFrontEnd().detect(frame)) {}
+
+  LidarCloud& cloud() { return std::get<LidarCloud>(frame.data); }
+  std::vector<std::uint32_t> within(double x0, double x1, double y0, double y1) const {
+    return obstaclesWhere(found,
+                          [&](double x, double y) { return x > x0 && x < x1 && y > y0 && y < y1; });
+  }
+  Descriptor describe(const std::vector<std::uint32_t>& members) {
+    EXPECT_FALSE(members.empty());
+    return ClusterDescriber(found, cloud(), DirectionCells(found.points)).describe(members);
+  }
+  Descriptor describe(double x0, double x1, double y0, double y1) {
+    return describe(within(x0, x1, y0, y1));
+  }
+};
 
 }  // namespace perception::test

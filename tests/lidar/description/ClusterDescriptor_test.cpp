@@ -6,13 +6,12 @@
 #include <set>
 #include <string>
 
-#include "libperception/core/system/Parallel.h"
-#include "libperception/lidar/description/DescribedClusters.h"
 #include "tests/support/ClusterScenes.h"
 
 namespace perception {
 namespace {
 
+using test::ObstacleScan;
 using test::SolidBox;
 using test::SolidCylinder;
 using test::SolidScene;
@@ -20,28 +19,6 @@ using test::SolidScene;
 double value(const Descriptor& d, Feature f) {
   return static_cast<double>(d[static_cast<std::size_t>(f)]);
 }
-
-/// A scan of a scene and its obstacles.
-struct Scan {
-  SensorFrame frame;
-  LidarDetections found;
-
-  explicit Scan(const SolidScene& scene, const test::SpinningLidar& lidar = test::narrowLidar())
-      : frame(test::castScan(scene, lidar)), found(test::plainFrontEnd().detect(frame)) {}
-
-  LidarCloud& cloud() { return std::get<LidarCloud>(frame.data); }
-  std::vector<std::uint32_t> within(double x0, double x1, double y0, double y1) const {
-    return test::obstaclesWhere(
-        found, [&](double x, double y) { return x > x0 && x < x1 && y > y0 && y < y1; });
-  }
-  Descriptor describe(const std::vector<std::uint32_t>& members) {
-    EXPECT_FALSE(members.empty());
-    return ClusterDescriber(found, cloud(), DirectionCells(found.points)).describe(members);
-  }
-  Descriptor describe(double x0, double x1, double y0, double y1) {
-    return describe(within(x0, x1, y0, y1));
-  }
-};
 
 /// A van of which one side is seen: from 0.25 to 2 m, its roof above the sensor.
 SolidBox van(double x, double y) { return {{x, y}, kPi / 2, 4.4, 1.8, 0.25, 2}; }
@@ -57,7 +34,7 @@ TEST(ClusterDescriptor, EveryFeatureHasANameOfItsOwn) {
 TEST(ClusterDescriptor, ASideOfAVanIsAPlaneAcrossTheLineOfSight) {
   SolidScene scene;
   scene.boxes = {van(10.9, 0)};
-  Scan scan(scene);
+  ObstacleScan scan(scene);
   const auto members = scan.within(9, 12, -3, 3);
   const Descriptor d = scan.describe(members);
   EXPECT_NEAR(value(d, Feature::kLength), 4.4, 0.15);
@@ -96,7 +73,7 @@ TEST(ClusterDescriptor, ASideOfAVanIsAPlaneAcrossTheLineOfSight) {
 TEST(ClusterDescriptor, AWallAlongTheLineOfSightHasAnAspectOfOne) {
   SolidScene scene;
   scene.boxes = {{{11, 1.5}, 0, 6, 0.2, 0, 2.5}};
-  Scan scan(scene);
+  ObstacleScan scan(scene);
   const Descriptor d = scan.describe(7, 15, 1.2, 1.8);
   EXPECT_GT(value(d, Feature::kAspect), 0.97);
   EXPECT_NEAR(value(d, Feature::kLength), 6, 0.6) << "0.6 m between beams at its end";
@@ -105,7 +82,7 @@ TEST(ClusterDescriptor, AWallAlongTheLineOfSightHasAnAspectOfOne) {
 TEST(ClusterDescriptor, APoleIsAnUprightLine) {
   SolidScene scene;
   scene.cylinders = {{{8, 0}, 0.1, 0, 2.8}};
-  Scan scan(scene);
+  ObstacleScan scan(scene);
   const Descriptor d = scan.describe(7, 9, -1, 1);
   EXPECT_LT(value(d, Feature::kLength), 0.3);
   EXPECT_GT(value(d, Feature::kUprightness), 6);
@@ -117,7 +94,7 @@ TEST(ClusterDescriptor, APoleIsAnUprightLine) {
 TEST(ClusterDescriptor, BehindAFenceIsSomethingOrNot) {
   SolidScene scene;
   scene.cylinders = {{{10, -0.5}, 0.15, 0, 2}, {{10, 0.5}, 0.15, 0, 2}};
-  const auto shown = [&] { return Scan(scene).describe(9, 11, -1, 1); };
+  const auto shown = [&] { return ObstacleScan(scene).describe(9, 11, -1, 1); };
   const Descriptor open = shown();  // 18 cells, 9 of them between the posts
   EXPECT_NEAR(value(open, Feature::kHoles), 0.5, 0.12);
   EXPECT_LT(value(open, Feature::kFill), 0.75);
@@ -132,21 +109,21 @@ TEST(ClusterDescriptor, BehindAFenceIsSomethingOrNot) {
 TEST(ClusterDescriptor, WhatStandsBeforeAnEndCutsIt) {
   SolidScene scene;
   scene.boxes = {van(12.9, 0)};
-  EXPECT_EQ(value(Scan(scene).describe(11, 14, -3, 3), Feature::kCut), 0);
+  EXPECT_EQ(value(ObstacleScan(scene).describe(11, 14, -3, 3), Feature::kCut), 0);
   scene.cylinders = {{{7, -1.2}, 0.2, 0, 2.5}};
-  EXPECT_NEAR(value(Scan(scene).describe(11, 14, -3, 3), Feature::kCut), 0.5, 0.06)
+  EXPECT_NEAR(value(ObstacleScan(scene).describe(11, 14, -3, 3), Feature::kCut), 0.5, 0.06)
       << "of its two ends";
 }
 
 TEST(ClusterDescriptor, IsolationIsTheDistanceToTheNextObstacle) {
   SolidScene scene;
   scene.boxes = {van(10.9, 0)};
-  const Descriptor alone = Scan(scene).describe(9, 12, -3, 3);
+  const Descriptor alone = ObstacleScan(scene).describe(9, 12, -3, 3);
   EXPECT_EQ(value(alone, Feature::kIsolation), 3);
   EXPECT_EQ(value(alone, Feature::kTouching), 0);
   for (const double gap : {0.2, 1.0, 2.0}) {
     scene.cylinders = {{{10, 2.2 + gap + 0.1}, 0.1, 0, 2}};
-    const Descriptor beside = Scan(scene).describe(9, 12, -3, 2.25);
+    const Descriptor beside = ObstacleScan(scene).describe(9, 12, -3, 2.25);
     // Few of the returns are looked at.
     EXPECT_GE(value(beside, Feature::kIsolation), gap - 0.01);
     EXPECT_LE(value(beside, Feature::kIsolation), gap + 0.25);
@@ -157,7 +134,7 @@ TEST(ClusterDescriptor, IsolationIsTheDistanceToTheNextObstacle) {
 TEST(ClusterDescriptor, MembersOfAnotherClusterOfTheScanAreNeighbors) {
   SolidScene scene;
   scene.cylinders = {{{10, -0.5}, 0.1, 0, 2}, {{10, 0.5}, 0.1, 0, 2}};
-  Scan scan(scene);
+  ObstacleScan scan(scene);
   const DirectionCells cells(scan.found.points);
   ClusterDescriber describer(scan.found, scan.cloud(), cells);
   const auto isolation = [&](double y0, double y1) {
@@ -169,11 +146,11 @@ TEST(ClusterDescriptor, MembersOfAnotherClusterOfTheScanAreNeighbors) {
 }
 
 /// A van and a brighter person beside it.
-Scan brightPerson(float scale) {
+ObstacleScan brightPerson(float scale) {
   SolidScene scene;
   scene.boxes = {van(12.9, 1)};
   scene.cylinders = {{{10, -3}, 0.25, 0, 1.75}};
-  Scan scan(scene);
+  ObstacleScan scan(scene);
   LidarCloud& cloud = scan.cloud();
   for (std::size_t i = 0; i < cloud.size(); ++i) {
     const float shade = 0.1f + 0.01f * static_cast<float>(i % 7);
@@ -183,7 +160,7 @@ Scan brightPerson(float scale) {
 }
 
 TEST(ClusterDescriptor, IntensitiesAreRanksWhateverTheirScale) {
-  Scan unit = brightPerson(1), bytes = brightPerson(255);
+  ObstacleScan unit = brightPerson(1), bytes = brightPerson(255);
   const auto person = unit.within(9, 11, -4, -2), rest = unit.within(9, 14, -2, 5);
   const Descriptor a = unit.describe(person), b = bytes.describe(person);
   const double share =
@@ -197,7 +174,7 @@ TEST(ClusterDescriptor, IntensitiesAreRanksWhateverTheirScale) {
 }
 
 TEST(ClusterDescriptor, WithoutIntensitiesTheyAreTheUsualOnes) {
-  Scan scan = brightPerson(1);
+  ObstacleScan scan = brightPerson(1);
   const auto person = scan.within(9, 11, -4, -2);
   const Descriptor shaded = scan.describe(person);
   scan.cloud().intensity.clear();
@@ -218,7 +195,7 @@ TEST(ClusterDescriptor, DoesNotDependOnTheYawOfTheVehicle) {
       scene.boxes.push_back({rotate2(turn, place), turn + 0.4, 4.4, 1.8, 0.25, 1.5});
     test::SpinningLidar lidar = test::narrowLidar();
     lidar.T_ego_sensor = makePose(0, 0, 1.73, turn);
-    Scan scan(scene, lidar);
+    ObstacleScan scan(scene, lidar);
     return scan.describe(test::obstaclesWhere(scan.found, [turn](double x, double y) {
       const Vector2 p = rotate2(-turn, Vector2(x, y));
       return p.y() > -1.5;
@@ -242,7 +219,7 @@ TEST(ClusterDescriptor, DoesNotDependOnTheYawOfTheVehicle) {
 TEST(ClusterDescriptor, ASingleReturnHasFiniteFeatures) {
   SolidScene scene;
   scene.cylinders = {{{10, 0}, 0.25, 0, 1.75}};
-  Scan scan(scene);
+  ObstacleScan scan(scene);
   const auto members = scan.within(9, 11, -1, 1);
   ASSERT_FALSE(members.empty());
   const Descriptor d = scan.describe(std::vector<std::uint32_t>{members[0]});
@@ -250,59 +227,6 @@ TEST(ClusterDescriptor, ASingleReturnHasFiniteFeatures) {
   EXPECT_EQ(value(d, Feature::kLength), 0);
   EXPECT_EQ(value(d, Feature::kRows), 1);
   EXPECT_EQ(value(d, Feature::kColumns), 1);
-}
-
-TEST(DescribedClusters, LeavesOutWhatIsTooLowOrTooSmall) {
-  SolidScene scene;
-  scene.boxes = {{{10, 3}, 0, 1, 1, 0, 0.45}};                             // a low block
-  scene.cylinders = {{{10, -3}, 0.25, 0, 1.75}, {{60, 0}, 0.1, 0, 1.75}};  // the last: few returns
-  Scan scan(scene);
-  EXPECT_GE(scan.within(9, 11, 2, 4).size(), 8u);
-  const auto clusters =
-      describedClusters(scan.found, scan.cloud(), DirectionCells(scan.found.points));
-  ASSERT_EQ(clusters.size(), 1u);
-  EXPECT_EQ(clusters[0].segment.points, scan.within(9, 11, -4, -2));
-  EXPECT_EQ(clusters[0].descriptor, scan.describe(9, 11, -4, -2));
-}
-
-TEST(DescribedClusters, PartsReferToTheirWhole) {
-  SolidScene scene;
-  scene.boxes = {{{10, 4}, 0, 1, 1, 0, 0.45}};  // left out: the numbers of the others change
-  scene.cylinders = {{{15, -2.36}, 0.25, 0, 1.75}, {{15, -1.64}, 0.25, 0, 1.75}};
-  Scan scan(scene);
-  const auto clusters =
-      describedClusters(scan.found, scan.cloud(), DirectionCells(scan.found.points));
-  ASSERT_EQ(clusters.size(), 3u);
-  EXPECT_EQ(clusters[0].segment.whole, -1);
-  EXPECT_EQ(clusters[1].segment.whole, 0);
-  EXPECT_EQ(clusters[2].segment.whole, 0);
-}
-
-TEST(DescribedClusters, AreTheSameWhateverTheNumberOfThreads) {
-  SolidScene scene;  // pairs of persons: a whole of two parts each, in different places
-  for (int k = -15; k <= 15; ++k) {
-    const double angle = 0.1 * k, range = 14 + 0.1 * k;
-    for (const double side : {-0.36, 0.36})
-      scene.cylinders.push_back({{range * std::cos(angle) - side * std::sin(angle),
-                                  range * std::sin(angle) + side * std::cos(angle)},
-                                 0.25,
-                                 0,
-                                 1.7 + 0.01 * k});
-  }
-  Scan scan(scene);
-  const DirectionCells cells(scan.found.points);
-  const auto with = [&](std::size_t threads) {
-    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
-    return describedClusters(scan.found, scan.cloud(), cells);
-  };
-  const auto one = with(1), two = with(2);
-  ASSERT_GT(one.size(), 60u);
-  ASSERT_EQ(two.size(), one.size());
-  for (std::size_t k = 0; k < one.size(); ++k) {
-    EXPECT_EQ(two[k].segment.points, one[k].segment.points) << k;
-    EXPECT_EQ(two[k].segment.whole, one[k].segment.whole) << k;
-    EXPECT_EQ(two[k].descriptor, one[k].descriptor) << k;
-  }
 }
 
 }  // namespace
