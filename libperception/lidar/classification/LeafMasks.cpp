@@ -4,7 +4,18 @@
 #include <cmath>
 #include <limits>
 
+#include "libperception/simd/Dispatch.h"
+
 namespace perception {
+namespace {
+
+PERCEPTION_WIDER void clearLeaves(const std::uint16_t* __restrict kept, std::size_t trees,
+                                  std::uint16_t* __restrict left) {
+#pragma GCC unroll 4
+  for (std::size_t t = 0; t < trees; ++t) left[t] &= kept[t];
+}
+
+}  // namespace
 
 std::optional<LeafMasks> LeafMasks::of(const BoostedTrees& trees) {
   LeafMasks masks;
@@ -47,7 +58,14 @@ void LeafMasks::sort(Gathered& gathered) {
     first_[f] = static_cast<std::uint32_t>(splits_.size());
     splits_.insert(splits_.end(), splits.begin(), splits.end());
     splits_.push_back({std::numeric_limits<float>::infinity(), 0, static_cast<Mask>(~0u)});
+    first_left_[f] = left_.size();
+    std::vector<Mask> left(trees_, static_cast<Mask>(~0u));
+    for (std::size_t k = 0; k < splits.size(); ++k) {
+      left[splits[k].tree] &= splits[k].kept;
+      if (k % kGroup == kGroup - 1) left_.insert(left_.end(), left.begin(), left.end());
+    }
   }
+  first_[kFeatures] = static_cast<std::uint32_t>(splits_.size());
 }
 
 void LeafMasks::scores(const Descriptor& descriptor, double (&out)[kClusterKinds]) const {
@@ -57,7 +75,14 @@ void LeafMasks::scores(const Descriptor& descriptor, double (&out)[kClusterKinds
     // What is no number goes right.
     const float value =
         std::isnan(descriptor[f]) ? std::numeric_limits<float>::infinity() : descriptor[f];
-    for (const Split* s = &splits_[first_[f]]; value > s->threshold; ++s) left[s->tree] &= s->kept;
+    const Split *const first = &splits_[first_[f]], *const end = splits_.data() + first_[f + 1];
+    const Split* s = first;
+    while (s + kGroup < end && value > s[kGroup - 1].threshold) s += kGroup;
+    if (s != first) {
+      const std::size_t group = static_cast<std::size_t>(s - first) / kGroup - 1;
+      clearLeaves(&left_[first_left_[f] + group * trees_], trees_, left.data());
+    }
+    for (; value > s->threshold; ++s) left[s->tree] &= s->kept;
   }
   for (std::size_t k = 0; k < kClusterKinds; ++k) out[k] = base_[k];
   for (std::size_t t = 0; t < trees_; t += kClusterKinds) {

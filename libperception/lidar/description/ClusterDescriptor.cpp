@@ -10,6 +10,7 @@
 #include "libperception/core/Frames.h"
 #include "libperception/lidar/description/DescriptorParts.h"
 #include "libperception/lidar/outline/EdgeFit.h"
+#include "libperception/simd/Dispatch.h"
 #include "libperception/simd/Vector8.h"
 
 namespace perception {
@@ -174,7 +175,7 @@ void ClusterDescriber::describeEdges(Members& c, Descriptor& d) {
   at(d, Feature::kEdgeShare) = fit.close / static_cast<float>(count);
 }
 
-void ClusterDescriber::describeOutline(const Members& c, Descriptor& d) {
+PERCEPTION_WIDER void ClusterDescriber::describeOutline(const Members& c, Descriptor& d) {
   const std::size_t n = c.x.size();
   std::vector<float> heights;
   heights.reserve(kSpreadSample);

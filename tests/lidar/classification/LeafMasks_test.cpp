@@ -44,7 +44,7 @@ BoostedTrees treesOf(std::size_t leaves, std::size_t count, Rng& rng) {
 TEST(LeafMasks, GiveTheScoresOfTheTreesToTheBit) {
   Rng rng(RngKey{1, 0, 0, 3});
   for (const std::size_t leaves : {1, 2, 12, 16}) {
-    const BoostedTrees trees = treesOf(leaves, 10 * kClusterKinds, rng);
+    const BoostedTrees trees = treesOf(leaves, 100 * kClusterKinds, rng);
     const auto masks = LeafMasks::of(trees);
     ASSERT_TRUE(masks) << leaves;
     for (int i = 0; i < 200; ++i) {
