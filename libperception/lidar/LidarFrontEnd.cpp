@@ -114,7 +114,7 @@ void describeSolid(const SensorFrame& frame, const LidarCloud& cloud, const Obst
     };
     slab.erase(std::remove_if(slab.begin(), slab.end(), sure), slab.end());
   }
-  const auto shares = solidShares(found.points, cells, slab);
+  const auto shares = solidShares(cells, slab);
   found.solid.assign(found.height.size(), PlacedReturns::kFewDirections);
   for (std::size_t k = 0; k < slab.size(); ++k) found.solid[slab[k]] = shares[k];
 }
@@ -180,7 +180,8 @@ LidarDetections LidarFrontEnd::detect(const SensorFrame& frame) const {
   std::optional<DirectionCells> cells;
   if (classifier_ || frame.causes.any()) cells.emplace(found.points);
   if (classifier_) {
-    Judgement judgement = judgedClusters(found, *cloud, *cells, *classifier_, causesOf(frame));
+    Judgement judgement =
+        judgedClusters(found, *cloud, *cells, *classifier_, causesOf(frame) /*, reach_*/);
     found.judged = std::move(judgement.clusters);
     found.phantom = std::move(judgement.phantom);
     found.verdicts = std::move(judgement.verdicts);

@@ -146,7 +146,7 @@ void ClusterSampler::addScan(const SensorFrame& frame, ScanVariant variant,
   const LidarDetections found = front_end_.detect(frame);
   const std::size_t first = samples_.clusters.size();
   points_.clear();
-  for (auto& [segment, descriptor, probabilities] :
+  for (auto& [segment, descriptor, described, probabilities] :
        describedClusters(found, cloud, DirectionCells(found.points))) {
     ClusterSample sample;
     sample.variant = variant_;

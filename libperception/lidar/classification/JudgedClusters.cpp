@@ -133,8 +133,7 @@ void dropLoose(const LidarDetections& found, const DirectionCells& cells,
     std::vector<std::uint32_t> points, kept;
     points.reserve(j.points.size());
     for (const std::uint32_t i : j.points) points.push_back(found.obstacles[i]);
-    for (const std::uint32_t k : surfaceReturns(found.points, cells, points))
-      kept.push_back(j.points[k]);
+    for (const std::uint32_t k : surfaceReturns(cells, points)) kept.push_back(j.points[k]);
     j.points = std::move(kept);
   }
 }
@@ -205,16 +204,19 @@ std::vector<char> standing(const std::vector<DescribedCluster>& clusters) {
 
 Judgement judgedClusters(const LidarDetections& found, const LidarCloud& cloud,
                          const DirectionCells& cells, const ClusterClassifier& classifier,
-                         const CausesAt& causes_at) {
-  auto clusters = describedClusters(found, cloud, cells, [&](DescribedCluster& cluster) {
+                         const CausesAt& causes_at, double reach) {
+  const auto judge = [&](DescribedCluster& cluster) {
+    Probabilities& p = cluster.probabilities;
+    p[static_cast<std::size_t>(ClusterKind::kThing)] = 1;
+    if (!cluster.described) return false;
     const auto range =
         static_cast<double>(cluster.descriptor[static_cast<std::size_t>(Feature::kRange)]);
-    const Probabilities& p = cluster.probabilities =
-        withinSize(classifier.probabilities(cluster.descriptor), cluster.descriptor,
+    p = withinSize(classifier.probabilities(cluster.descriptor), cluster.descriptor,
                    found.points.sensor.z() + found.top_slope * range);
     return roadUser(p) < kSureWhole &&
            at(p, ClusterKind::kThing) + at(p, ClusterKind::kPhantom) < kSureThing;
-  });
+  };
+  auto clusters = describedClusters(found, cloud, cells, judge, reach);
   const std::size_t n = clusters.size();
   const PhantomPrior prior(classifier.prior());
   const std::vector<char> stands = standing(clusters);

@@ -122,8 +122,8 @@ ClusterDescriber::ClusterDescriber(const LidarDetections& found, const LidarClou
   for (std::size_t k = 0; k < n; ++k) {
     dx_[k] = found.x[k] - sx, dy_[k] = found.y[k] - sy;
     dz_[k] = points.z[found.obstacles[k]] - sz;
+    place_[k] = cells.placeOf(found.obstacles[k]);
   }
-  DirectionCells::placeAll(dx_.data(), dy_.data(), dz_.data(), n, place_.data());
   rankIntensities(cloud);
   sortByPlace();
 }

@@ -211,7 +211,8 @@ namespace {
 
 /// The least of `best` and the squared distances [m^2] of points without that mark from a place.
 PERCEPTION_WIDER float nearestOf(const float* x, const float* y, const std::int32_t* mark,
-                                 std::size_t count, float px, float py, std::int32_t own, float best) {
+                                 std::size_t count, float px, float py, std::int32_t own,
+                                 float best) {
   constexpr float kFar = 1e30f;
   constexpr std::size_t kFour = 4;
   Float4 nearest = all<Float4>(best);

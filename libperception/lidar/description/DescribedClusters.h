@@ -12,6 +12,7 @@ namespace perception {
 struct DescribedCluster {
   Segment segment;  ///< `whole`: index into the same list
   Descriptor descriptor{};
+  bool described = true;                              ///< false: it is beyond reach
   std::array<double, kClusterKinds> probabilities{};  ///< left to the visitor
 };
 
@@ -21,10 +22,12 @@ using ClusterVisitor = std::function<bool(DescribedCluster&)>;
 /// The segments of a scan that are large enough to be told by their shape, and their descriptors:
 /// 8 returns or more (assumed: the fewest of a person at 40 m from 64 beams), up to the length of
 /// an articulated bus (20 m), and so high that they may be a road user (0.5 m; assumed). `cells`:
-/// of all points of `found`.
+/// of all points of `found`. Wholes that are farther from the sensor than `reach` [m] are not
+/// described.
 std::vector<DescribedCluster> describedClusters(const LidarDetections& found,
                                                 const LidarCloud& cloud,
                                                 const DirectionCells& cells,
-                                                const ClusterVisitor& visit = {});
+                                                const ClusterVisitor& visit = {},
+                                                double reach = 1e9);
 
 }  // namespace perception

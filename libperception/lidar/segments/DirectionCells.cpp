@@ -1,7 +1,6 @@
 #include "libperception/lidar/segments/DirectionCells.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "libperception/simd/Dispatch.h"
@@ -30,49 +29,34 @@ inline __attribute__((always_inline)) RowColumn rowColumnOf(float dx, float dy, 
 /// Cell and range [m] of each point; without branches, so that the compiler vectorizes it.
 PERCEPTION_WIDEST void placePoints(const float* __restrict x, const float* __restrict y,
                                    const float* __restrict z, std::size_t count, float sx, float sy,
-                                   float sz, std::int32_t* __restrict place,
+                                   float sz, DirectionCells::Place* __restrict place,
                                    float* __restrict range) {
   for (std::size_t i = 0; i < count; ++i) {
     const float dx = x[i] - sx, dy = y[i] - sy, dz = z[i] - sz;
     const RowColumn at = rowColumnOf(dx, dy, dz, std::sqrt(dx * dx + dy * dy));
-    place[i] = at.row * DirectionCells::kColumns + at.column;
+    place[i] = {static_cast<std::int16_t>(at.column), static_cast<std::int16_t>(at.row)};
     range[i] = std::sqrt(dx * dx + dy * dy + dz * dz);
-  }
-}
-
-/// The same without ranges, of offsets from the sensor.
-PERCEPTION_WIDEST void placeOffsets(const float* __restrict dx, const float* __restrict dy,
-                                    const float* __restrict dz, std::size_t count,
-                                    DirectionCells::Place* __restrict places) {
-  for (std::size_t i = 0; i < count; ++i) {
-    const RowColumn at = rowColumnOf(dx[i], dy[i], dz[i], std::sqrt(dx[i] * dx[i] + dy[i] * dy[i]));
-    places[i] = {static_cast<std::int16_t>(at.column), static_cast<std::int16_t>(at.row)};
   }
 }
 
 }  // namespace
 
-void DirectionCells::placeAll(const float* dx, const float* dy, const float* dz, std::size_t count,
-                              Place* places) {
-  placeOffsets(dx, dy, dz, count, places);
-}
-
 DirectionCells::DirectionCells(const EgoPoints& points)
-    : nearest_(static_cast<std::size_t>(kColumns) * kRows, Cell{}.nearest),
+    : place_(points.size()),
+      range_(points.size()),
+      nearest_(static_cast<std::size_t>(kColumns) * kRows, Cell{}.nearest),
       farthest_(nearest_.size() + kReadBeyond, Cell{}.farthest) {
   const auto sx = static_cast<float>(points.sensor.x()), sy = static_cast<float>(points.sensor.y()),
              sz = static_cast<float>(points.sensor.z());
   constexpr std::size_t kBlock = 512;  // points that fit in the L1 cache
-  std::array<std::int32_t, kBlock> place;
-  std::array<float, kBlock> range;
   for (std::size_t first = 0; first < points.size(); first += kBlock) {
     const std::size_t count = std::min(kBlock, points.size() - first);
     placePoints(&points.x[first], &points.y[first], &points.z[first], count, sx, sy, sz,
-                place.data(), range.data());
-    for (std::size_t k = 0; k < count; ++k) {
-      float& nearest = nearest_[static_cast<std::size_t>(place[k])];
-      float& farthest = farthest_[static_cast<std::size_t>(place[k])];
-      nearest = std::min(nearest, range[k]), farthest = std::max(farthest, range[k]);
+                &place_[first], &range_[first]);
+    for (std::size_t i = first; i < first + count; ++i) {
+      const std::size_t cell = indexOf(place_[i].column, place_[i].row);
+      nearest_[cell] = std::min(nearest_[cell], range_[i]);
+      farthest_[cell] = std::max(farthest_[cell], range_[i]);
     }
   }
 }

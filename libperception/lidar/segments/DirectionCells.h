@@ -6,6 +6,7 @@
 
 #include "libperception/core/math/Angle.h"
 #include "libperception/lidar/EgoPoints.h"
+#include "libperception/simd/RawVector.h"
 
 namespace perception {
 
@@ -27,9 +28,10 @@ class DirectionCells {
 
   explicit DirectionCells(const EgoPoints& points);
 
-  /// Directions of offsets from the sensor [m]; elevations beyond the rows are in the outermost.
-  static void placeAll(const float* dx, const float* dy, const float* dz, std::size_t count,
-                       Place* places);
+  /// Direction of a point; elevations beyond the rows are in the outermost.
+  Place placeOf(std::size_t point) const { return place_[point]; }
+  /// [m] of a point from the sensor
+  float rangeOf(std::size_t point) const { return range_[point]; }
   /// Whether all places up to two beside it are cells that lie row by row, without wrapping around.
   static bool isWithin(const Place& p) {
     return p.row > 1 && p.row < kRows - 2 && p.column > 1 && p.column < kColumns - 2;
@@ -51,6 +53,8 @@ class DirectionCells {
     return static_cast<std::size_t>(row) * kColumns + static_cast<std::size_t>(column);
   }
 
+  RawVector<Place> place_;                 ///< of the points
+  RawVector<float> range_;                 ///< of the points
   std::vector<float> nearest_, farthest_;  ///< row by row
 };
 

@@ -47,8 +47,10 @@ struct PlaceBox {
   void add(const Vector2& p) { low = low.cwiseMin(p), high = high.cwiseMax(p); }
   /// Not above that of any return in it, rounding included.
   double squaredDistance(const Vector2& p) const {
-    const Vector2 off = (low - p).cwiseMax(p - high).cwiseMax(0.0);
-    return off.squaredNorm();
+    return squaredDistance(PlaceBox{p, p});
+  }
+  double squaredDistance(const PlaceBox& b) const {
+    return (low - b.high).cwiseMax(b.low - high).cwiseMax(0.0).squaredNorm();
   }
 };
 
@@ -264,6 +266,7 @@ class SurfaceFinder {
   /// Horizontal distance of the nearest returns of two groups [m]; at most `within`.
   double distanceOf(std::uint32_t a, std::uint32_t b, double within) const {
     double least = within * within;
+    if (columns_[a].box.squaredDistance(columns_[b].box) >= least) return within;
     std::vector<Vector2> facing;
     for (const std::uint32_t j : groups_[a])
       if (const Vector2 p = placeOf(j); columns_[b].box.squaredDistance(p) < least)

@@ -1,7 +1,6 @@
 #include "libperception/lidar/segments/LooseReturns.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstddef>
 #include <limits>
@@ -97,81 +96,50 @@ PERCEPTION_LANES CellsAbout cellsAbout(const DirectionCells& cells,
                                          : cellsAtBorder(cells, place, shell, around);
 }
 
-/// Some returns: their directions and ranges [m].
-struct PlacedBlock {
-  static constexpr std::size_t kSize = 256;  // that fit in the L1 cache
-  std::size_t count = 0;
-  std::array<DirectionCells::Place, kSize> place;
-  std::array<float, kSize> range;
-};
-
-/// solidShares() of a block.
-PERCEPTION_LANES void sharesIn(const PlacedBlock& block, const DirectionCells& cells,
-                               float* shares) {
-  for (std::size_t k = 0; k < block.count; ++k) {
-    const float range = block.range[k];
+PERCEPTION_LANES void sharesIn(const std::vector<std::uint32_t>& points,
+                               const DirectionCells& cells, float* shares) {
+  for (std::size_t k = 0; k < points.size(); ++k) {
+    const float range = cells.rangeOf(points[k]);
     const bool among = range < PlacedReturns::kFlakesWithin;
     const float bend = among ? kSmooth : kBend, grazing = among ? kSmoothGrazing : kGrazing;
     const Shell shell{range - bend - grazing * range, range + bend};
-    const CellsAbout about = among ? cellsAbout<2>(cells, block.place[k], shell)
-                                   : cellsAbout<1>(cells, block.place[k], shell);
+    const DirectionCells::Place place = cells.placeOf(points[k]);
+    const CellsAbout about =
+        among ? cellsAbout<2>(cells, place, shell) : cellsAbout<1>(cells, place, shell);
     shares[k] = about.solidShare(among ? kLeastTold : 0);
   }
 }
 
 PERCEPTION_TARGET("default")
-void sharesOf(const PlacedBlock& block, const DirectionCells& cells, float* shares) {
-  sharesIn(block, cells, shares);
+void sharesOf(const std::vector<std::uint32_t>& points, const DirectionCells& cells,
+              float* shares) {
+  sharesIn(points, cells, shares);
 }
 #if PERCEPTION_HAS_WIDER
 PERCEPTION_TARGET("avx2")
-void sharesOf(const PlacedBlock& block, const DirectionCells& cells, float* shares) {
-  sharesIn(block, cells, shares);
+void sharesOf(const std::vector<std::uint32_t>& points, const DirectionCells& cells,
+              float* shares) {
+  sharesIn(points, cells, shares);
 }
 #endif
 
-/// Calls `use` with the number of the first of a block of the points, and with the block.
-template <class Use>
-void forBlocks(const EgoPoints& all, const std::vector<std::uint32_t>& points, const Use& use) {
-  const auto sx = static_cast<float>(all.sensor.x()), sy = static_cast<float>(all.sensor.y()),
-             sz = static_cast<float>(all.sensor.z());
-  std::array<float, PlacedBlock::kSize> dx, dy, dz;
-  PlacedBlock block;
-  for (std::size_t first = 0; first < points.size(); first += block.count) {
-    block.count = std::min(PlacedBlock::kSize, points.size() - first);
-    for (std::size_t k = 0; k < block.count; ++k) {
-      const std::uint32_t i = points[first + k];
-      dx[k] = all.x[i] - sx, dy[k] = all.y[i] - sy, dz[k] = all.z[i] - sz;
-    }
-    DirectionCells::placeAll(dx.data(), dy.data(), dz.data(), block.count, block.place.data());
-    for (std::size_t k = 0; k < block.count; ++k)
-      block.range[k] = std::sqrt(dx[k] * dx[k] + dy[k] * dy[k] + dz[k] * dz[k]);
-    use(first, block);
-  }
-}
-
 }  // namespace
 
-std::vector<float> solidShares(const EgoPoints& all, const DirectionCells& cells,
+std::vector<float> solidShares(const DirectionCells& cells,
                                const std::vector<std::uint32_t>& points) {
-  std::vector<float> shares(points.size(), PlacedReturns::kFewDirections);
-  forBlocks(all, points, [&](std::size_t first, const PlacedBlock& block) {
-    sharesOf(block, cells, &shares[first]);
-  });
+  std::vector<float> shares(points.size());
+  sharesOf(points, cells, shares.data());
   return shares;
 }
 
-std::vector<std::uint32_t> surfaceReturns(const EgoPoints& all, const DirectionCells& cells,
+std::vector<std::uint32_t> surfaceReturns(const DirectionCells& cells,
                                           const std::vector<std::uint32_t>& points) {
   std::vector<std::uint32_t> kept;
   kept.reserve(points.size());
-  forBlocks(all, points, [&](std::size_t first, const PlacedBlock& block) {
-    for (std::size_t k = 0; k < block.count; ++k) {
-      const Shell shell{-std::numeric_limits<float>::infinity(), block.range[k] + kBend};
-      if (!cellsAbout<1>(cells, block.place[k], shell).loose())
-        kept.push_back(static_cast<std::uint32_t>(first + k));
-    }
-  });
+  for (std::uint32_t k = 0; k < points.size(); ++k) {
+    const Shell shell{-std::numeric_limits<float>::infinity(), cells.rangeOf(points[k]) + kBend};
+    if (!cellsAbout<1>(cells, cells.placeOf(points[k]), shell).loose()) kept.push_back(k);
+  }
   const auto count = static_cast<double>(points.size());
   if (count - static_cast<double>(kept.size()) <= kMostLoose * count) return kept;
   kept.resize(points.size());

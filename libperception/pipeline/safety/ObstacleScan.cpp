@@ -50,6 +50,7 @@ class Doubter {
         returns_(returns),
         params_(params),
         weighted_(cloud != nullptr && !cloud->trust.empty()),
+        judged_(cloud != nullptr && (!cloud->label.empty() || !cloud->echo.empty())),
         caused_(frame.causes.any()) {}
 
   /// Makes room for as many hits more.
@@ -67,6 +68,8 @@ class Doubter {
     const float doubt = 1 - (alone ? trust : trust * (1 - shape));
     const bool asks = caused_ && (alone || static_cast<double>(doubt) > kHardly);
     const float solid = returns_.solid.empty() ? PlacedReturns::kFewDirections : returns_.solid[i];
+    if (!asks && !judged_ && trust > 0)  // most are: nothing is held against them
+      return set(hit, 1, 1, doubt, false, solid >= kWall, obstacles);
     // Whether it stands in a cloud matters only where it may be a surface.
     const bool perhaps_surface = solid >= kPerhapsSurface;
     const CausesHere here =
@@ -80,16 +83,20 @@ class Doubter {
     const float weight = 1 - held;
     const float lone = alone && solid < kWall ? static_cast<float>(cause) : 0;
     const float dense = weight * (1 - lone);
-    if (weighted_) obstacles.scan.weights[hit] = weight;
-    obstacles.dense[hit] = dense < kDoubted ? 0 : dense;
-    obstacles.doubted[hit] = doubt >= kDoubted;
-    if (!caused_) return;
-    obstacles.surface[hit] = perhaps_surface && dense < 1 && trust > 0 &&
-                             solid >= (in_cloud ? kWallInCloud : leastOfSurface(i));
-    obstacles.solid[hit] = wall;
+    const bool surface = caused_ && perhaps_surface && dense < 1 && trust > 0 &&
+                         solid >= (in_cloud ? kWallInCloud : leastOfSurface(i));
+    set(hit, weight, dense, doubt, surface, wall, obstacles);
   }
 
  private:
+  void set(std::size_t hit, float weight, float dense, float doubt, bool surface, bool wall,
+           ObstacleScan& obstacles) const {
+    if (weighted_) obstacles.scan.weights[hit] = weight;
+    obstacles.dense[hit] = dense < kDoubted ? 0 : dense;
+    obstacles.doubted[hit] = doubt >= kDoubted;
+    if (caused_) obstacles.surface[hit] = surface, obstacles.solid[hit] = wall;
+  }
+
   float leastOfSurface(std::size_t i) const {
     const Vector3 place(returns_.x[i], returns_.y[i], returns_.z[i]);
     const double range = (place - frame_.T_ego_sensor.translation()).norm();
@@ -107,7 +114,7 @@ class Doubter {
   const LidarCloud* cloud_;
   const PlacedReturns& returns_;
   const TrustParams& params_;
-  bool weighted_, caused_;
+  bool weighted_, judged_, caused_;
 };
 
 }  // namespace
@@ -122,6 +129,7 @@ ObstacleScan obstacleScanOf(const SensorFrame& frame, const PlacedReturns& retur
   const auto* cloud = std::get_if<LidarCloud>(&frame.data);
   const Doubter doubter(frame, cloud, returns, trust);
   scan.hits.reserve(returns.size()), scan.clear.reserve(returns.size());
+  scan.weights.reserve(returns.size()), obstacles.dense.reserve(returns.size());
   const bool backward = isReversing(frame.ego.T_world_ego, frame.ego.velocity, stop);
   obstacles.road = RoadHeights(backward);
   const double height_max = std::min(returns.height_max, clearance);

@@ -26,10 +26,7 @@ EgoPoints pointsAt(const std::vector<std::pair<Direction, double>>& list,
 }
 
 DirectionCells::Place placeOf(const Direction& d) {
-  const EgoPoints p = pointsAt({{d, 7}});
-  DirectionCells::Place place{};
-  DirectionCells::placeAll(p.x.data(), p.y.data(), p.z.data(), 1, &place);
-  return place;
+  return DirectionCells(pointsAt({{d, 7}})).placeOf(0);
 }
 
 TEST(DirectionCells, PlacesAreStepsOfAzimuthAndElevation) {

@@ -38,12 +38,12 @@ std::vector<std::uint32_t> indicesOf(const EgoPoints& all) {
 
 TEST(LooseReturns, OfASurfaceAloneNoneIs) {
   const EgoPoints all = rearSeen(0);
-  EXPECT_EQ(surfaceReturns(all, DirectionCells(all), indicesOf(all)), indicesOf(all));
+  EXPECT_EQ(surfaceReturns(DirectionCells(all), indicesOf(all)), indicesOf(all));
 }
 
 TEST(LooseReturns, ThosePassedByMostBeamsAre) {
   const EgoPoints all = rearSeen(11);
-  const auto kept = surfaceReturns(all, DirectionCells(all), indicesOf(all));
+  const auto kept = surfaceReturns(DirectionCells(all), indicesOf(all));
   std::size_t rear = 0;
   for (std::uint32_t i = 0; i < all.size(); ++i) rear += i % 11 != 0;
   EXPECT_EQ(kept.size(), rear);
@@ -76,7 +76,7 @@ TEST(LooseReturns, OfASideSeenAtAGrazingAngleNoneIs) {
   ASSERT_GT(side, 5u);
   for (std::size_t k = 0; k < side; ++k)
     points.push_back(static_cast<std::uint32_t>(points.size()));
-  EXPECT_EQ(surfaceReturns(all, DirectionCells(all), points), points);
+  EXPECT_EQ(surfaceReturns(DirectionCells(all), points), points);
 }
 
 TEST(LooseReturns, AClusterOfMoreThanHalfLooseOnesStaysWhole) {
@@ -85,7 +85,7 @@ TEST(LooseReturns, AClusterOfMoreThanHalfLooseOnesStaysWhole) {
   for (std::uint32_t i = 0; i < all.size(); i += 11) plume.push_back(i);
   std::vector<std::uint32_t> whole(plume.size());
   std::iota(whole.begin(), whole.end(), 0u);
-  EXPECT_EQ(surfaceReturns(all, DirectionCells(all), plume), whole);
+  EXPECT_EQ(surfaceReturns(DirectionCells(all), plume), whole);
 }
 
 /// The same rear, `range` [m] away; in front of it every fourth beam ends on a flake from 4 m on.
@@ -113,14 +113,14 @@ double shareAbove(const std::vector<float>& shares, float least) {
 
 TEST(SolidShares, OfASurfaceAlmostEveryDirectionEndsThere) {
   const EgoPoints all = rearSeen(0);
-  EXPECT_EQ(shareAbove(solidShares(all, DirectionCells(all), indicesOf(all)), 0.99F), 1);
+  EXPECT_EQ(shareAbove(solidShares(DirectionCells(all), indicesOf(all)), 0.99F), 1);
 }
 
 TEST(SolidShares, OfFlakesBeforeASurfaceFewDo) {
   std::vector<std::uint32_t> flakes;
   const EgoPoints all = rearInSnow(20, &flakes);
   ASSERT_GT(flakes.size(), 150u);
-  EXPECT_EQ(shareAbove(solidShares(all, DirectionCells(all), flakes), 0.55F), 0);
+  EXPECT_EQ(shareAbove(solidShares(DirectionCells(all), flakes), 0.55F), 0);
 }
 
 TEST(SolidShares, OfASurfaceBehindFlakesMostStillDo) {
@@ -128,7 +128,7 @@ TEST(SolidShares, OfASurfaceBehindFlakesMostStillDo) {
   const EgoPoints all = rearInSnow(20, &flakes);
   for (const std::uint32_t i : indicesOf(all))
     if (!std::binary_search(flakes.begin(), flakes.end(), i)) surface.push_back(i);
-  EXPECT_EQ(shareAbove(solidShares(all, DirectionCells(all), surface), 0.75F), 1);
+  EXPECT_EQ(shareAbove(solidShares(DirectionCells(all), surface), 0.75F), 1);
 }
 
 TEST(SolidShares, FlakesAreNoSurfaceWhereNothingIsBehindThem) {
@@ -139,7 +139,7 @@ TEST(SolidShares, FlakesAreNoSurfaceWhereNothingIsBehindThem) {
   for (const std::uint32_t i : flakes) {
     sky.x.push_back(all.x[i]), sky.y.push_back(all.y[i]), sky.z.push_back(all.z[i]);
   }
-  EXPECT_LT(shareAbove(solidShares(sky, DirectionCells(sky), indicesOf(sky)), 0.55F), 0.1);
+  EXPECT_LT(shareAbove(solidShares(DirectionCells(sky), indicesOf(sky)), 0.55F), 0.1);
 }
 
 /// Fog of 50 m of sight before an open sky: each of 100 by 50 beams, 0.2 deg by 0.4 deg apart,
@@ -164,7 +164,7 @@ EgoPoints denseFog() {
 
 TEST(SolidShares, TheFarEdgeOfFogIsNoSurface) {
   const EgoPoints fog = denseFog();
-  EXPECT_LT(shareAbove(solidShares(fog, DirectionCells(fog), indicesOf(fog)), 0.55F), 1e-3);
+  EXPECT_LT(shareAbove(solidShares(DirectionCells(fog), indicesOf(fog)), 0.55F), 1e-3);
 }
 
 TEST(SolidShares, ASurfaceAtTheFarEdgeOfFogIsOne) {
@@ -179,7 +179,7 @@ TEST(SolidShares, ASurfaceAtTheFarEdgeOfFogIsOne) {
     fog.z[i] = static_cast<float>(place.z());
     surface.push_back(i);
   }
-  EXPECT_GT(shareAbove(solidShares(fog, DirectionCells(fog), surface), 0.75F), 0.8);
+  EXPECT_GT(shareAbove(solidShares(DirectionCells(fog), surface), 0.75F), 0.8);
 }
 
 TEST(SolidShares, APersonAtTheEdgeOfTheCellsIsLookedAt) {
@@ -193,7 +193,7 @@ TEST(SolidShares, APersonAtTheEdgeOfTheCellsIsLookedAt) {
       all.z.push_back(static_cast<float>(1.7 + 5 * std::sin(elevation)));
     }
   }
-  EXPECT_EQ(shareAbove(solidShares(all, DirectionCells(all), indicesOf(all)), 0.99F), 1);
+  EXPECT_EQ(shareAbove(solidShares(DirectionCells(all), indicesOf(all)), 0.99F), 1);
 }
 
 }  // namespace
