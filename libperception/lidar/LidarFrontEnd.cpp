@@ -181,7 +181,7 @@ LidarDetections LidarFrontEnd::detect(const SensorFrame& frame) const {
   if (classifier_ || frame.causes.any()) cells.emplace(found.points);
   if (classifier_) {
     Judgement judgement =
-        judgedClusters(found, *cloud, *cells, *classifier_, causesOf(frame) /*, reach_*/);
+        judgedClusters(found, *cloud, *cells, *classifier_, causesOf(frame), reach_);
     found.judged = std::move(judgement.clusters);
     found.phantom = std::move(judgement.phantom);
     found.verdicts = std::move(judgement.verdicts);

@@ -2,9 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "libperception/core/system/Parallel.h"
+#include "libperception/lidar/classification/JudgedClusters.h"
 #include "tests/support/ClusterScenes.h"
 
 namespace perception {
@@ -64,6 +66,63 @@ TEST(DescribedClusters, AreTheSameWhateverTheNumberOfThreads) {
     EXPECT_EQ(two[k].segment.whole, one[k].segment.whole) << k;
     EXPECT_EQ(two[k].descriptor, one[k].descriptor) << k;
   }
+}
+
+/// A van 12 m away, a person at 10 m and a wall at 25 m.
+struct Street {
+  SensorFrame frame;
+  LidarDetections found;
+  DirectionCells cells;
+
+  Street()
+      : frame(test::castScan(scene(), test::narrowLidar())),
+        found(test::plainFrontEnd().detect(frame)),
+        cells(found.points) {}
+  static test::SolidScene scene() {
+    test::SolidScene street;
+    street.boxes = {{{12.9, 0}, kPi / 2, 4.4, 1.8, 0.25, 2}, {{25, 2}, kPi / 2, 8, 0.3, 0, 4}};
+    street.cylinders = {{{10, -4}, 0.25, 0, 1.75}};
+    return street;
+  }
+  const LidarCloud& cloud() const { return std::get<LidarCloud>(frame.data); }
+  bool isOfWall(std::uint32_t obstacle) const { return found.x[obstacle] > 20; }
+};
+
+/// Calls everything a vehicle.
+ClusterClassifier vehiclesAlone() {
+  BoostedTrees trees;
+  trees.base[static_cast<std::size_t>(ClusterKind::kVehicle)] = 8;
+  return {trees, std::array<Calibration, kClusterKinds>{},
+          std::array<double, kClusterKinds>{0.2, 0.2, 0.2, 0.15, 0.05, 0.2}, EvidenceMemory{},
+          Provenance{}};
+}
+
+TEST(DescribedClusters, WholesBeyondReachAreNotDescribed) {
+  const Street street;
+  const auto all = describedClusters(street.found, street.cloud(), street.cells),
+             near = describedClusters(street.found, street.cloud(), street.cells, {}, 18);
+  std::size_t beyond = 0;
+  for (const DescribedCluster& cluster : near) {
+    const bool wall = street.isOfWall(cluster.segment.points.front());
+    EXPECT_EQ(cluster.described, !wall || cluster.segment.whole >= 0);
+    if (!cluster.described) ++beyond;
+    EXPECT_EQ(cluster.descriptor == Descriptor{}, !cluster.described);
+  }
+  EXPECT_GE(beyond, 1u);
+  EXPECT_TRUE(std::all_of(all.begin(), all.end(), [](const auto& c) { return c.described; }));
+}
+
+TEST(DescribedClusters, BeyondReachTheyAreThings) {
+  const Street street;
+  const auto judged = [&](double reach) {
+    return judgedClusters(street.found, street.cloud(), street.cells, vehiclesAlone(), {}, reach);
+  };
+  const Judgement far = judged(60), near = judged(18);
+  EXPECT_EQ(far.clusters.size(), 3u);
+  EXPECT_EQ(near.clusters.size(), 2u);
+  EXPECT_EQ(near.verdicts.clusters, far.verdicts.clusters);
+  for (std::uint32_t i = 0; i < street.found.obstacles.size(); ++i)
+    if (street.isOfWall(i)) EXPECT_EQ(near.phantom[i], 0) << "it stays an obstacle";
 }
 
 }  // namespace
