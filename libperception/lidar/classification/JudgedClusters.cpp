@@ -133,7 +133,8 @@ void dropLoose(const LidarDetections& found, const DirectionCells& cells,
     std::vector<std::uint32_t> points, kept;
     points.reserve(j.points.size());
     for (const std::uint32_t i : j.points) points.push_back(found.obstacles[i]);
-    for (const std::uint32_t k : surfaceReturns(cells, points)) kept.push_back(j.points[k]);
+    for (const std::uint32_t k : surfaceReturns(found.points, cells, points))
+      kept.push_back(j.points[k]);
     j.points = std::move(kept);
   }
 }

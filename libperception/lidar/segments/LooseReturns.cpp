@@ -18,6 +18,10 @@ constexpr float kBend = 0.3f;        // [m] in range, of a surface from cell to 
 constexpr int kLeastCells = 4;       // about a return that tell
 constexpr float kLeastSolid = 0.3f;  // of these: the corner of a surface fills four in nine
 constexpr double kMostLoose = 0.5;   // of a cluster
+// What tells where the surface of a cluster begins that a cloud hangs before.
+constexpr double kCloud = 0.03;       // of a cluster's returns: loose ones before the surface
+constexpr float kLayer = 0.1f;        // [m] of range
+constexpr double kLeastLayer = 0.25;  // of the returns of the densest layer
 // What tells a surface from flakes.
 constexpr int kLeastInRow = 3;     // cells that tell; where beams are far apart: one row
 constexpr float kGrazing = 0.05f;  // [-] of the range: a cell of 0.4 deg on a side at 8 deg
@@ -132,7 +136,49 @@ std::vector<float> solidShares(const DirectionCells& cells,
   return shares;
 }
 
-std::vector<std::uint32_t> surfaceReturns(const DirectionCells& cells,
+namespace {
+
+/// [m] where the surface of a cluster begins by the ranges of its returns: no nearer layer holds a
+/// good part of what the densest one holds.
+float surfaceBegins(std::vector<float> ranges) {
+  std::sort(ranges.begin(), ranges.end());
+  std::vector<std::size_t> held(ranges.size());
+  for (std::size_t first = 0, end = 0; first < ranges.size(); ++first) {
+    while (end < ranges.size() && ranges[end] < ranges[first] + kLayer) ++end;
+    held[first] = end - first;
+  }
+  const double least =
+      kLeastLayer * static_cast<double>(*std::max_element(held.begin(), held.end()));
+  const auto begins = std::find_if(held.begin(), held.end(), [least](std::size_t count) {
+    return static_cast<double>(count) >= least;
+  });
+  return ranges[static_cast<std::size_t>(begins - held.begin())];
+}
+
+/// Takes out of `kept` what lies before the surface of a cluster, where a cloud hangs: its densest
+/// lumps let no beam pass.
+void dropLumps(const EgoPoints& all, const std::vector<std::uint32_t>& points,
+               std::vector<std::uint32_t>& kept) {
+  const auto rangeOf = [&](std::uint32_t k) {
+    const float dx = all.x[points[k]] - static_cast<float>(all.sensor.x()),
+                dy = all.y[points[k]] - static_cast<float>(all.sensor.y());
+    return std::sqrt(dx * dx + dy * dy);
+  };
+  std::vector<float> ranges;
+  ranges.reserve(kept.size());
+  for (const std::uint32_t k : kept) ranges.push_back(rangeOf(k));
+  const float begins = surfaceBegins(std::move(ranges));
+  const auto before = [&](std::uint32_t k) { return rangeOf(k) < begins; };
+  std::size_t nearer = 0;
+  for (std::uint32_t k = 0; k < points.size(); ++k) nearer += before(k);
+  const auto lumps = static_cast<std::size_t>(std::count_if(kept.begin(), kept.end(), before));
+  if (static_cast<double>(nearer - lumps) < kCloud * static_cast<double>(points.size())) return;
+  kept.erase(std::remove_if(kept.begin(), kept.end(), before), kept.end());
+}
+
+}  // namespace
+
+std::vector<std::uint32_t> surfaceReturns(const EgoPoints& all, const DirectionCells& cells,
                                           const std::vector<std::uint32_t>& points) {
   std::vector<std::uint32_t> kept;
   kept.reserve(points.size());
@@ -141,9 +187,13 @@ std::vector<std::uint32_t> surfaceReturns(const DirectionCells& cells,
     if (!cellsAbout<1>(cells, cells.placeOf(points[k]), shell).loose()) kept.push_back(k);
   }
   const auto count = static_cast<double>(points.size());
-  if (count - static_cast<double>(kept.size()) <= kMostLoose * count) return kept;
-  kept.resize(points.size());
-  for (std::uint32_t k = 0; k < points.size(); ++k) kept[k] = k;
+  const double loose = count - static_cast<double>(kept.size());
+  if (loose > kMostLoose * count) {
+    kept.resize(points.size());
+    for (std::uint32_t k = 0; k < points.size(); ++k) kept[k] = k;
+  } else if (loose > 0 && loose >= kCloud * count && !kept.empty()) {
+    dropLumps(all, points, kept);
+  }
   return kept;
 }
 

@@ -38,12 +38,12 @@ std::vector<std::uint32_t> indicesOf(const EgoPoints& all) {
 
 TEST(LooseReturns, OfASurfaceAloneNoneIs) {
   const EgoPoints all = rearSeen(0);
-  EXPECT_EQ(surfaceReturns(DirectionCells(all), indicesOf(all)), indicesOf(all));
+  EXPECT_EQ(surfaceReturns(all, DirectionCells(all), indicesOf(all)), indicesOf(all));
 }
 
 TEST(LooseReturns, ThosePassedByMostBeamsAre) {
   const EgoPoints all = rearSeen(11);
-  const auto kept = surfaceReturns(DirectionCells(all), indicesOf(all));
+  const auto kept = surfaceReturns(all, DirectionCells(all), indicesOf(all));
   std::size_t rear = 0;
   for (std::uint32_t i = 0; i < all.size(); ++i) rear += i % 11 != 0;
   EXPECT_EQ(kept.size(), rear);
@@ -76,7 +76,7 @@ TEST(LooseReturns, OfASideSeenAtAGrazingAngleNoneIs) {
   ASSERT_GT(side, 5u);
   for (std::size_t k = 0; k < side; ++k)
     points.push_back(static_cast<std::uint32_t>(points.size()));
-  EXPECT_EQ(surfaceReturns(DirectionCells(all), points), points);
+  EXPECT_EQ(surfaceReturns(all, DirectionCells(all), points), points);
 }
 
 TEST(LooseReturns, AClusterOfMoreThanHalfLooseOnesStaysWhole) {
@@ -85,7 +85,41 @@ TEST(LooseReturns, AClusterOfMoreThanHalfLooseOnesStaysWhole) {
   for (std::uint32_t i = 0; i < all.size(); i += 11) plume.push_back(i);
   std::vector<std::uint32_t> whole(plume.size());
   std::iota(whole.begin(), whole.end(), 0u);
-  EXPECT_EQ(surfaceReturns(DirectionCells(all), plume), whole);
+  EXPECT_EQ(surfaceReturns(all, DirectionCells(all), plume), whole);
+}
+
+/// Moves `count` by `count` of the beams to 0.6 m before the rear: what hangs there lets none pass.
+void addLump(int count, EgoPoints& all) {
+  for (int row = 8; row < 8 + count; ++row) {
+    for (int column = 16; column < 16 + count; ++column) {
+      const auto i = static_cast<std::size_t>(row * 40 + column);
+      const auto scale = static_cast<float>((kRear - 0.6) / kRear);
+      all.x[i] *= scale, all.y[i] *= scale;
+      all.z[i] = 1.7f + (all.z[i] - 1.7f) * scale;
+    }
+  }
+}
+
+double nearestOf(const EgoPoints& all, const std::vector<std::uint32_t>& kept) {
+  double nearest = 1e9;
+  for (const std::uint32_t i : kept)
+    nearest = std::min(nearest, static_cast<double>(std::hypot(all.x[i], all.y[i])));
+  return nearest;
+}
+
+TEST(LooseReturns, WithAPlumeItsDenseLumpsAreNoSurface) {
+  EgoPoints all = rearSeen(11);
+  addLump(6, all);
+  const auto kept = surfaceReturns(all, DirectionCells(all), indicesOf(all));
+  EXPECT_GT(nearestOf(all, kept), kRear - 0.05);
+  EXPECT_GT(kept.size(), 650u) << "of 727 on the rear without the lump";
+}
+
+TEST(LooseReturns, WithoutAPlumeWhatStandsOutStays) {
+  EgoPoints all = rearSeen(0);
+  addLump(6, all);
+  const auto kept = surfaceReturns(all, DirectionCells(all), indicesOf(all));
+  EXPECT_LT(nearestOf(all, kept), kRear - 0.5);
 }
 
 /// The same rear, `range` [m] away; in front of it every fourth beam ends on a flake from 4 m on.
