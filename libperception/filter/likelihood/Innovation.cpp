@@ -6,6 +6,29 @@
 #include "libperception/filter/state/FixedAxes.h"
 
 namespace perception {
+namespace {
+
+/// Takes from H_extent of the axes that tell a size what its nearness does to them: with a center
+/// that stays, a longer vehicle is nearer and so looks wider, but how near it is the range tells
+/// (method.md 5.13).
+void atSeenRange(const AxisPrediction& prediction, const std::array<Eigen::Index, kMaxAxes>& axis,
+                 AxisMask tell, decltype(Innovation::H_extent)& H_extent) {
+  const auto tells = [&](Eigen::Index row) {
+    return (tell >> axis[static_cast<std::size_t>(row)] & 1) != 0;
+  };
+  const auto shifted = [&](Eigen::Index row) {
+    return prediction.H_q.row(axis[static_cast<std::size_t>(row)]).head<2>();
+  };
+  for (Eigen::Index r = 0; r < H_extent.rows(); ++r) {
+    if (tells(r)) continue;
+    const double size = shifted(r).squaredNorm();
+    if (size <= 0) continue;
+    for (Eigen::Index i = 0; i < H_extent.rows(); ++i)
+      if (tells(i)) H_extent.row(i) -= shifted(i).dot(shifted(r)) / size * H_extent.row(r);
+  }
+}
+
+}  // namespace
 
 Innovation innovationOf(const ClassFilter& filter, const Kinematics& kinematics,
                         const AxisPrediction& prediction, const Measurement& m,
@@ -35,6 +58,7 @@ Innovation innovationOf(const ClassFilter& filter, const Kinematics& kinematics,
       out.R(k, i) = m.R(b, a) + (has_model_noise ? prediction.R_model(b, a) : 0) + extent;
     }
   }
+  atSeenRange(prediction, axis, model.extentAxes(), H_extent);
   for (Eigen::Index i = 0; i < n; ++i)
     if (!(model.extentAxes() >> axis[static_cast<std::size_t>(i)] & 1)) H_extent.row(i).setZero();
   out.R.diagonal().array() += 1e-9;  // keeps S invertible for any R (method.md 4)
