@@ -10,7 +10,8 @@
 namespace perception {
 namespace {
 
-constexpr AxisMask kPlaceSeen = 3;  // x and y
+constexpr AxisMask kPlaceSeen = 3;       // x and y
+constexpr double kStartsAndStops = 0.1;  // [1/s] rate at which vehicles do either (assumed)
 
 /// Innovation covariance of a class filter without R of the measurement.
 struct ExpectedPlace {
@@ -75,6 +76,10 @@ ScanTerms::ScanTerms(const MeasurementScan& s, const FilterModel& m)
     for (ClassId j = 0; j < model.classes.size(); ++j)
       labels_.push_back({logLabelOf(*scan.model, z, j), logLabelAndScore(*scan.model, z, j)});
   }
+  const auto& all = model.classes.classes;
+  const auto still =
+      std::find_if(all.begin(), all.end(), [](const ObjectClass& c) { return !c.motion->moves; });
+  if (still != all.end()) still_ = static_cast<ClassId>(still - all.begin());
   const bool place = std::all_of(scan.measurements.begin(), scan.measurements.end(),
                                  [](const Measurement& z) { return z.seen == kPlaceSeen; });
   if (place && model.params.region_memory <= 0) place_ = scan.model->positionOnly();
@@ -96,6 +101,7 @@ PairTerms::PairTerms(const Track& track, const ClassValues& detection, std::size
   pair.log_class_evidence.assign(classes, kMinusInfinity);
   pair.nis.assign(classes, std::numeric_limits<double>::infinity());
   mixture_.assign(classes, kMinusInfinity);
+  log_density_.assign(classes, kMinusInfinity);
 }
 
 void PairTerms::add(std::size_t j, const Density& density, double log_detection) {
@@ -109,6 +115,7 @@ void PairTerms::add(std::size_t j, const Density& density, double log_detection)
   // which their filters do not estimate.
   pair_.log_by_class[j] =
       density.log_density + terms_.labelAndScore(k, j) + log_detection + heading;
+  log_density_[j] = density.log_density;
   pair_.log_class_evidence[j] =
       terms_.kinematic_exponent * density.log_density +
       (evidence_ ? evidence_->added(j) : terms_.label_exponent * terms_.label(k, j)) +
@@ -116,7 +123,32 @@ void PairTerms::add(std::size_t j, const Density& density, double log_detection)
   mixture_[j] = track_.log_class[j] + pair_.log_by_class[j];
 }
 
+void PairTerms::weighStanding() {
+  pair_.stands = track_.stands;
+  if (terms_.still() < 0) return;
+  const double still = log_density_[static_cast<std::size_t>(terms_.still())];
+  if (still == kMinusInfinity) return;
+  const Stamp seen = *std::max_element(track_.last_hit.begin(), track_.last_hit.end());
+  const double dt = std::max(0.0, terms_.scan.state.stamp - seen);
+  const double same = std::exp(-2 * kStartsAndStops * dt);
+  constexpr double kLeast = 1e-6;
+  const double stands = std::clamp(0.5 + (track_.stands - 0.5) * same, kLeast, 1 - kLeast);
+  double moving = kMinusInfinity;  // of the vehicle that fits best
+  for (std::size_t j = 0; j < log_density_.size(); ++j) {
+    const double own = log_density_[j];
+    if (own == kMinusInfinity ||
+        terms_.model.classes[static_cast<ClassId>(j)].shape != ObjectShape::kVehicle)
+      continue;
+    moving = std::max(moving, own);
+    const double either = logAddExp(std::log(stands) + still, std::log1p(-stands) + own);
+    pair_.log_class_evidence[j] += terms_.kinematic_exponent * (either - own);
+  }
+  if (moving == kMinusInfinity) return;
+  pair_.stands = 1 / (1 + (1 - stands) / stands * std::exp(moving - still));
+}
+
 void PairTerms::finish() {
+  weighStanding();
   pair_.log_likelihood = logSumExp(mixture_);
   if (pair_.log_likelihood > kMinusInfinity && terms_.model.params.shape_prior)
     pair_.log_prior += logShape(track_, m_);

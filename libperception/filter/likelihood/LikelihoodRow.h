@@ -19,6 +19,8 @@ class ScanTerms {
   double labelAndScore(std::size_t k, std::size_t j) const {
     return labels_[k * classes_ + j].label_and_score;
   }
+  /// The class that never moves, or -1: what stands moves like it.
+  ClassId still() const { return still_; }
   /// The model if it is position-only, so that positionRow() applies; else null.
   const PositionOnlyModel* place() const { return place_; }
 
@@ -35,6 +37,7 @@ class ScanTerms {
   std::size_t classes_;
   std::vector<Labels> labels_;
   const PositionOnlyModel* place_ = nullptr;
+  ClassId still_ = -1;
 };
 
 /// Accumulates the likelihoods of one track-measurement pair over the classes.
@@ -49,12 +52,16 @@ class PairTerms {
   const ClassValues& mixture() const { return mixture_; }
 
  private:
+  /// Innovations of vehicles as evidence of the class: they may stand.
+  void weighStanding();
+
   const Track& track_;
   const ScanTerms& terms_;
   const Measurement& m_;
   PairLikelihood& pair_;
   std::optional<RepeatedEvidence> evidence_;
   ClassValues mixture_;
+  ClassValues log_density_;  // by class; -inf: none
 };
 
 /// Upper bound of P_D: with P_D = 1 a single missed detection would set the existence probability

@@ -93,6 +93,9 @@ struct Track {
   double existence = 0;       ///< probability that its detections have a cause that goes on
   /// Probability that this cause is a phantom in a wake and not an object, given existence.
   double phantom = 0;
+  /// Probability that it stands, if it is a vehicle: without it every view of a waiting car would
+  /// say that it is rather something that never moves.
+  double stands = 0.5;
   Bank bank;  ///< one filter a class
   ClassId decided_class =
       -1;  ///< if >= 0 only this class's filter is updated ([filter] decide_class)

@@ -180,6 +180,7 @@ Track hitTrack(Track predicted, const TrackLikelihoods& row, const PairLikelihoo
   const std::optional<Look> look = lookOf(track, m, scan, row.detection_by_class);
   track.history = extendHistory(track.history, scan_index, pair.measurement);
   track.existence = model.params.existence_max;
+  track.stands = pair.stands;
   track.last_in_view = scan.state.stamp;
   track.last_hit[modalityIndex(scan.modality)] = scan.state.stamp;
   ++track.hits[modalityIndex(scan.modality)];
