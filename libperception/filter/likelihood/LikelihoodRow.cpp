@@ -140,8 +140,10 @@ void PairTerms::weighStanding() {
         terms_.model.classes[static_cast<ClassId>(j)].shape != ObjectShape::kVehicle)
       continue;
     moving = std::max(moving, own);
-    const double either = logAddExp(std::log(stands) + still, std::log1p(-stands) + own);
-    pair_.log_class_evidence[j] += terms_.kinematic_exponent * (either - own);
+    const double d = still - own;  // of the mixture's log density over `own`, without overflow:
+    const double gain = d > 0 ? d + std::log(stands + (1 - stands) * std::exp(-d))
+                              : std::log(stands * std::exp(d) + (1 - stands));
+    pair_.log_class_evidence[j] += terms_.kinematic_exponent * gain;
   }
   if (moving == kMinusInfinity) return;
   pair_.stands = 1 / (1 + (1 - stands) / stands * std::exp(moving - still));
