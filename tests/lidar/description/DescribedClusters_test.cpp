@@ -42,15 +42,12 @@ TEST(DescribedClusters, PartsReferToTheirWhole) {
 }
 
 TEST(DescribedClusters, AreTheSameWhateverTheNumberOfThreads) {
-  SolidScene scene;  // pairs of persons: a whole of two parts each, in different places
-  for (int k = -15; k <= 15; ++k) {
-    const double angle = 0.1 * k, range = 14 + 0.1 * k;
-    for (const double side : {-0.36, 0.36})
-      scene.cylinders.push_back({{range * std::cos(angle) - side * std::sin(angle),
-                                  range * std::sin(angle) + side * std::cos(angle)},
-                                 0.25,
-                                 0,
-                                 1.7 + 0.01 * k});
+  SolidScene scene;  // posts, and two persons who are a whole of two parts
+  scene.cylinders = {{{14, 5.04}, 0.25, 0, 1.75}, {{14, 5.76}, 0.25, 0, 1.75}};
+  for (int k = 0; k < 25; ++k) {
+    const double angle = 0.033 * k - 0.5, range = 10 + 2 * (k % 3);
+    scene.cylinders.push_back(
+        {{range * std::cos(angle), range * std::sin(angle)}, 0.1, 0, 1.7 + 0.01 * k});
   }
   ObstacleScan scan(scene);
   const DirectionCells cells(scan.found.points);
@@ -59,7 +56,9 @@ TEST(DescribedClusters, AreTheSameWhateverTheNumberOfThreads) {
     return describedClusters(scan.found, scan.cloud(), cells);
   };
   const auto one = with(1), two = with(2);
-  ASSERT_GT(one.size(), 60u);
+  ASSERT_GE(one.size(), 27u);
+  EXPECT_TRUE(
+      std::any_of(one.begin(), one.end(), [](const auto& c) { return c.segment.whole > 0; }));
   ASSERT_EQ(two.size(), one.size());
   for (std::size_t k = 0; k < one.size(); ++k) {
     EXPECT_EQ(two[k].segment.points, one[k].segment.points) << k;
