@@ -43,9 +43,10 @@ TEST(DescribedClusters, PartsReferToTheirWhole) {
 
 TEST(DescribedClusters, AreTheSameWhateverTheNumberOfThreads) {
   SolidScene scene;  // posts, and two persons who are a whole of two parts
-  scene.cylinders = {{{14, 5.04}, 0.25, 0, 1.75}, {{14, 5.76}, 0.25, 0, 1.75}};
+  scene.cylinders = {
+      {{15, -2.36}, 0.25, 0, 1.75}, {{15, -1.64}, 0.25, 0, 1.75}, {{15, -5}, 0.1, 0, 2}};
   for (int k = 0; k < 25; ++k) {
-    const double angle = 0.033 * k - 0.5, range = 10 + 2 * (k % 3);
+    const double angle = 0.023 * k - 0.07, range = 10 + 2 * (k % 3);
     scene.cylinders.push_back(
         {{range * std::cos(angle), range * std::sin(angle)}, 0.1, 0, 1.7 + 0.01 * k});
   }
