@@ -6,7 +6,6 @@
 #include "libperception/grid/way/StopAdvice.h"
 #include "libperception/measurement/Measurement.h"
 #include "libperception/pipeline/safety/RoadHeights.h"
-#include "libperception/simd/RawVector.h"
 #include "libperception/weather/trust/TrustParams.h"
 
 namespace perception {
@@ -19,12 +18,12 @@ struct ObstacleScan {
   /// [0, 1] weight of each hit as part of an obstacle seen in one scan: 0 where doubted, and as far
   /// as something may make phantoms there, without a cluster.
   std::vector<float> dense;
-  RawVector<char> doubted;  ///< by trust or shape, whether there is a cause for it or not
+  std::vector<char> doubted;  ///< by trust or shape, whether there is a cause for it or not
   /// May be a surface, though it has a cause to be doubted; empty: nothing may make phantoms.
-  RawVector<char> surface;
+  std::vector<char> surface;
   /// It lies outside wakes and clouds, and most directions about it end there, which ended its
   /// doubt in this scan. Empty where `surface` is.
-  RawVector<char> solid;
+  std::vector<char> solid;
   RoadHeights road;  ///< by the ground returns
 };
 
