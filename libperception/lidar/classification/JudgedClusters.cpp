@@ -226,8 +226,9 @@ Judgement judgedClusters(const LidarDetections& found, const LidarCloud& cloud,
   judgement.phantom.assign(found.obstacles.size(), PlacedReturns::kNoCluster);
   for (std::size_t i = 0; i < n; ++i) {
     if (!stands[i]) continue;
+    const bool asks = causes_at && clusters[i].described;
     const CausesHere causes =
-        causes_at ? causes_at(middleOf(found, clusters[i].segment.points)) : CausesHere{};
+        asks ? causes_at(middleOf(found, clusters[i].segment.points)) : CausesHere{};
     const Probabilities p = prior(clusters[i].probabilities, causes);
     const double phantom = at(p, ClusterKind::kPhantom);
     for (const std::uint32_t point : clusters[i].segment.points)

@@ -46,9 +46,6 @@ struct PlaceBox {
   Vector2 low = Vector2::Constant(std::numeric_limits<double>::infinity()), high = -low;
   void add(const Vector2& p) { low = low.cwiseMin(p), high = high.cwiseMax(p); }
   /// Not above that of any return in it, rounding included.
-  double squaredDistance(const Vector2& p) const {
-    return squaredDistance(PlaceBox{p, p});
-  }
   double squaredDistance(const PlaceBox& b) const {
     return (low - b.high).cwiseMax(b.low - high).cwiseMax(0.0).squaredNorm();
   }
@@ -155,12 +152,16 @@ class SurfaceFinder {
     return columns;
   }
 
-  /// Most returns of a group are higher [m above the ground].
-  float mostlyAbove(const ReturnGroup& group) const {
+  /// Most returns of a cabin or a roof are higher [m above the ground]; 0: it is neither.
+  float mostlyAbove(const ReturnGroup& group, float top) const {
+    const auto side =
+        static_cast<std::ptrdiff_t>(kStep.side_share * static_cast<double>(group.size()));
+    const auto low = std::count_if(group.begin(), group.end(), [&](std::uint32_t i) {
+      return places_.height[i] < kStep.lowest || top - places_.height[i] > kStep.thickness;
+    });
+    if (low > side) return 0;
     std::vector<float> heights(group.size());
     for (std::size_t k = 0; k < group.size(); ++k) heights[k] = places_.height[group[k]];
-    const auto side =
-        static_cast<std::ptrdiff_t>(kStep.side_share * static_cast<double>(heights.size()));
     std::nth_element(heights.begin(), heights.begin() + side, heights.end());
     return heights[static_cast<std::size_t>(side)];
   }
@@ -168,10 +169,8 @@ class SurfaceFinder {
   /// Pairs with no room for a column between them.
   void findNeighbors() {
     std::vector<std::pair<double, std::uint32_t>> starts;
-    for (std::uint32_t g = 0; g < columns_.size(); ++g) {
-      starts.emplace_back(columns_[g].low, g);
-      starts.emplace_back(columns_[g].low + kTwoPi, g);
-    }
+    for (std::uint32_t g = 0; g < columns_.size(); ++g)
+      for (const double turn : {0.0, kTwoPi}) starts.emplace_back(columns_[g].low + turn, g);
     std::sort(starts.begin(), starts.end());
     for (std::uint32_t a = 0; a < columns_.size(); ++a) {
       const double from = columns_[a].high + kLeastGap * step_,
@@ -230,9 +229,9 @@ class SurfaceFinder {
   std::optional<std::uint32_t> bodyBelow(std::uint32_t upper) const {
     const Columns& u = columns_[upper];
     if (u.top < kStep.lowest) return std::nullopt;
-    const float bottom = mostlyAbove(groups_[upper]), thickness = u.top - bottom;
-    if (bottom < kStep.lowest || thickness > kStep.thickness) return std::nullopt;
-    if (thickness > kStep.flat && widthOf(u) < kStep.width) return std::nullopt;
+    const float bottom = mostlyAbove(groups_[upper], u.top);
+    if (bottom < kStep.lowest) return std::nullopt;
+    if (u.top - bottom > kStep.flat && widthOf(u) < kStep.width) return std::nullopt;
     std::vector<std::uint32_t> below;
     constexpr float kRounding = 1e-3f;  // [m]
     for (auto body = std::lower_bound(bodies_.begin(), bodies_.end(),
@@ -269,14 +268,11 @@ class SurfaceFinder {
     if (columns_[a].box.squaredDistance(columns_[b].box) >= least) return within;
     std::vector<Vector2> facing;
     for (const std::uint32_t j : groups_[a])
-      if (const Vector2 p = placeOf(j); columns_[b].box.squaredDistance(p) < least)
+      if (const Vector2 p = placeOf(j); columns_[b].box.squaredDistance({p, p}) < least)
         facing.push_back(p);
-    if (facing.empty()) return within;
-    for (const std::uint32_t i : groups_[b]) {
-      const Vector2 p = placeOf(i);
-      if (columns_[a].box.squaredDistance(p) >= least) continue;
-      for (const Vector2& other : facing) least = std::min(least, (p - other).squaredNorm());
-    }
+    for (const std::uint32_t i : groups_[b])
+      if (const Vector2 p = placeOf(i); columns_[a].box.squaredDistance({p, p}) < least)
+        for (const Vector2& other : facing) least = std::min(least, (p - other).squaredNorm());
     return std::sqrt(least);
   }
 

@@ -82,13 +82,13 @@ class SegmentFinder::Trees {
     int whole = -1;
     if (members.size() > 1) {
       const ReturnGroup joined = joinedOf(members);
-      if (weightOf(joined) >= min_points_ && sizeOf(joined) <= max_size_) {
+      if (isEnough(joined) && sizeOf(joined) <= max_size_) {
         whole = 0;
         if (!found.add(joined, -1)) return std::move(found.segments);
       }
     }
     for (const std::uint32_t m : members)
-      if (weightOf(groups_[m]) >= min_points_) addGroup(groups_[m], whole, 0, found);
+      if (isEnough(groups_[m])) addGroup(groups_[m], whole, 0, found);
     return std::move(found.segments);
   }
 
@@ -201,11 +201,13 @@ class SegmentFinder::Trees {
     return 2 * static_cast<std::size_t>(in_its_columns) > 3 * part.size();
   }
 
-  double weightOf(const ReturnGroup& group) const {
-    if (weight_.empty()) return static_cast<double>(group.size());
+  /// Whether its returns weigh `min_points_`.
+  bool isEnough(const ReturnGroup& group) const {
+    if (weight_.empty()) return static_cast<double>(group.size()) >= min_points_;
     double sum = 0;
-    for (const std::uint32_t i : group) sum += static_cast<double>(weight_[i]);
-    return sum;
+    return std::any_of(group.begin(), group.end(), [&](std::uint32_t i) {
+      return (sum += static_cast<double>(weight_[i])) >= min_points_;
+    });
   }
 
   /// Longer side of the box about it along the axes [m].

@@ -121,8 +121,10 @@ TEST(DescribedClusters, BeyondReachTheyAreThings) {
   EXPECT_EQ(far.clusters.size(), 3u);
   EXPECT_EQ(near.clusters.size(), 2u);
   EXPECT_EQ(near.verdicts.clusters, far.verdicts.clusters);
-  for (std::uint32_t i = 0; i < street.found.obstacles.size(); ++i)
-    if (street.isOfWall(i)) EXPECT_EQ(near.phantom[i], 0) << "it stays an obstacle";
+  for (std::uint32_t i = 0; i < street.found.obstacles.size(); ++i) {
+    if (!street.isOfWall(i)) continue;
+    EXPECT_EQ(near.phantom[i], 0) << "it stays an obstacle";
+  }
 }
 
 }  // namespace
