@@ -16,6 +16,9 @@ constexpr double kSideFloor = 0.1 * 0.1;
 /// Share of objects of any size (two cars merged, half a car), so that no size excludes a class.
 constexpr double kShareOfAnySize = 0.05;
 constexpr double kLargest = 15;  // [m] of those
+/// Share of clusters that show a part of their object: of 546 on labeled vehicles within 40 m 0.19
+/// are lower than two thirds of it (five recordings). Their heights lie anywhere up to that [m].
+constexpr double kShareOfParts = 0.2, kTallest = 4;
 /// A side measures length or width if it is this close to parallel or perpendicular to the axis.
 constexpr double kAlong = radians(30);
 
@@ -23,9 +26,21 @@ double logScaledNormal(double d, double variance) {
   return -0.5 * (d * d / variance + std::log(variance));
 }
 
-double logHeight(const ObjectClass& c, const ScalarEstimate& height) {
+double logWholeHeight(const ObjectClass& c, const ScalarEstimate& height) {
   return logScaledNormal(height.mean - c.height, c.height_sigma * c.height_sigma +
                                                      kHeightBias * kHeightBias + height.variance);
+}
+
+/// The same where the cluster that was seen may be a part of the object. That says nothing between
+/// classes of one shape, which keep the ratio that whole objects have.
+double logPartHeight(const ClassTable& classes, const ObjectClass& c,
+                     const ScalarEstimate& height) {
+  const double whole = logWholeHeight(c, height);
+  double likeliest = whole;
+  for (const ObjectClass& other : classes.classes)
+    if (other.shape == c.shape) likeliest = std::max(likeliest, logWholeHeight(other, height));
+  const double part = kShareOfParts / kTallest * std::sqrt(kTwoPi);
+  return whole + std::log(1 - kShareOfParts + part * std::exp(-likeliest));
 }
 
 double logSide(const ScalarEstimate& side, double mean, double sigma) {
@@ -94,7 +109,11 @@ void updateSizes(const Measurement& m, std::optional<double> axis, const FilterM
   };
   if (m.height) {
     count(
-        p.height_exponent, [&](const ObjectClass& c) { return logHeight(c, track.height); },
+        p.height_exponent,
+        [&](const ObjectClass& c) {
+          return m.view ? logPartHeight(model.classes, c, track.height)
+                        : logWholeHeight(c, track.height);
+        },
         [&] { scalarUpdate(*m.height, track.height); });
   }
   if (m.sides && axis) {

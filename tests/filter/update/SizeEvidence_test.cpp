@@ -88,6 +88,41 @@ TEST(SizeEvidence, WithoutAnAxisOrACompleteSideNothingIsSaid) {
   for (const double lp : track.log_class) EXPECT_EQ(lp, 0);
 }
 
+Measurement cluster(double height) {
+  Measurement m;
+  m.height = ScalarEstimate{height, 0.02};
+  m.view = EvidenceView{0.1, 3, 100};
+  return m;
+}
+
+TEST(SizeEvidence, ALowClusterMayBeAPartOfACar) {
+  const FilterModel model = shippedModel();
+  const auto seen = [&](const Measurement& m) {
+    Track track = newborn(model);
+    for (int i = 0; i < 10; ++i) updateSizes(m, 0.0, model, track);
+    return track;
+  };
+  const Track fragment = seen(cluster(0.2)), whole = seen(cluster(1.5));
+  EXPECT_GT(odds(model, fragment, "car", "static-other"), -2);
+  EXPECT_LT(odds(model, fragment, "car", "static-other"), 0);
+  EXPECT_GT(odds(model, whole, "car", "static-other"), 0);
+  Measurement box = cluster(0.2);
+  box.view.reset();  // not of clusters that are told by their shape: the box of a detector
+  EXPECT_LT(odds(model, seen(box), "car", "static-other"), -5);
+}
+
+TEST(SizeEvidence, WhatMayBeAPartTellsCarsFromBusesAsAWholeDoes) {
+  const FilterModel model = shippedModel();
+  for (const double height : {0.2, 1.5, 3.0}) {
+    Track part = newborn(model), whole = newborn(model);
+    Measurement m = cluster(height);
+    updateSizes(m, 0.0, model, part);
+    m.view.reset();
+    updateSizes(m, 0.0, model, whole);
+    EXPECT_NEAR(odds(model, part, "car", "bus"), odds(model, whole, "car", "bus"), 1e-9);
+  }
+}
+
 TEST(SizeEvidence, NoSizeIsAProof) {
   const FilterModel model = shippedModel();
   Track track = newborn(model);
