@@ -17,8 +17,9 @@ constexpr double kSideFloor = 0.1 * 0.1;
 constexpr double kShareOfAnySize = 0.05;
 constexpr double kLargest = 15;  // [m] of those
 /// Share of clusters that show a part of their object: of 546 on labeled vehicles within 40 m 0.19
-/// are lower than two thirds of it (five recordings). Their heights lie anywhere up to that [m].
-constexpr double kShareOfParts = 0.2, kTallest = 4;
+/// are lower than two thirds of it (five recordings).
+constexpr double kShareOfParts = 0.2;
+constexpr double kTallest = 4, kWidest = 4;  // [m] of those, which have any size up to that
 /// A side measures length or width if it is this close to parallel or perpendicular to the axis.
 constexpr double kAlong = radians(30);
 
@@ -26,21 +27,10 @@ double logScaledNormal(double d, double variance) {
   return -0.5 * (d * d / variance + std::log(variance));
 }
 
-double logWholeHeight(const ObjectClass& c, const ScalarEstimate& height) {
+/// Without the constant factor of a normal density.
+double logHeight(const ObjectClass& c, const ScalarEstimate& height) {
   return logScaledNormal(height.mean - c.height, c.height_sigma * c.height_sigma +
                                                      kHeightBias * kHeightBias + height.variance);
-}
-
-/// The same where the cluster that was seen may be a part of the object. That says nothing between
-/// classes of one shape, which keep the ratio that whole objects have.
-double logPartHeight(const ClassTable& classes, const ObjectClass& c,
-                     const ScalarEstimate& height) {
-  const double whole = logWholeHeight(c, height);
-  double likeliest = whole;
-  for (const ObjectClass& other : classes.classes)
-    if (other.shape == c.shape) likeliest = std::max(likeliest, logWholeHeight(other, height));
-  const double part = kShareOfParts / kTallest * std::sqrt(kTwoPi);
-  return whole + std::log(1 - kShareOfParts + part * std::exp(-likeliest));
 }
 
 double logSide(const ScalarEstimate& side, double mean, double sigma) {
@@ -52,6 +42,16 @@ double logSide(const ScalarEstimate& side, double mean, double sigma) {
 double logSides(const ObjectClass& c, const Track& track) {
   return logSide(track.length, c.length, c.length_sigma) +
          logSide(track.width, c.width, c.width_sigma);
+}
+
+/// Log density of a size that may be that of a part, by those of whole objects; `any`: density of
+/// parts. A part says nothing between classes of one shape: they keep the ratio of whole objects.
+template <class Whole>
+double logPart(const ClassTable& classes, const ObjectClass& c, double any, const Whole& whole) {
+  double likeliest = whole(c);
+  for (const ObjectClass& other : classes.classes)
+    if (other.shape == c.shape) likeliest = std::max(likeliest, whole(other));
+  return whole(c) + std::log(1 - kShareOfParts + kShareOfParts * any * std::exp(-likeliest));
 }
 
 /// Complete sides into length and width. False: none.
@@ -96,29 +96,32 @@ void startSizes(const FilterModel& model, Track& track) {
 void updateSizes(const Measurement& m, std::optional<double> axis, const FilterModel& model,
                  Track& track) {
   const auto& p = model.params;
-  const auto count = [&](double exponent, const auto& evidence, const auto& see) {
+  const auto count = [&](double exponent, double any, const auto& whole, const auto& see) {
     if (exponent <= 0) {
       see();
       return;
     }
-    for (ClassId j = 0; j < model.classes.size(); ++j)
-      track.log_class[static_cast<std::size_t>(j)] -= exponent * evidence(model.classes[j]);
+    const auto add = [&](double sign) {
+      for (ClassId j = 0; j < model.classes.size(); ++j) {
+        const ObjectClass& c = model.classes[j];
+        track.log_class[static_cast<std::size_t>(j)] +=
+            sign * exponent * (m.view ? logPart(model.classes, c, any, whole) : whole(c));
+      }
+    };
+    add(-1);
     see();
-    for (ClassId j = 0; j < model.classes.size(); ++j)
-      track.log_class[static_cast<std::size_t>(j)] += exponent * evidence(model.classes[j]);
+    add(1);
   };
   if (m.height) {
     count(
-        p.height_exponent,
-        [&](const ObjectClass& c) {
-          return m.view ? logPartHeight(model.classes, c, track.height)
-                        : logWholeHeight(c, track.height);
-        },
+        p.height_exponent, std::sqrt(kTwoPi) / kTallest,
+        [&](const ObjectClass& c) { return logHeight(c, track.height); },
         [&] { scalarUpdate(*m.height, track.height); });
   }
   if (m.sides && axis) {
     count(
-        p.side_exponent, [&](const ObjectClass& c) { return logSides(c, track); },
+        p.side_exponent, 1 / (kLargest * kWidest),
+        [&](const ObjectClass& c) { return logSides(c, track); },
         [&] { seeSides(*m.sides, *axis, p.side_sigma, track); });
   }
 }

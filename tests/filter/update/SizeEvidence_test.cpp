@@ -111,6 +111,20 @@ TEST(SizeEvidence, ALowClusterMayBeAPartOfACar) {
   EXPECT_LT(odds(model, seen(box), "car", "static-other"), -5);
 }
 
+TEST(SizeEvidence, AThinClusterMayBeAPartOfACar) {
+  const FilterModel model = shippedModel();
+  const auto seen = [&](bool cluster) {
+    Measurement face = box(2.7, 0.1);
+    if (cluster) face.view = EvidenceView{0.1, 3, 100};
+    Track track = newborn(model);
+    for (int i = 0; i < 10; ++i) updateSizes(face, 0.0, model, track);
+    return odds(model, track, "car", "static-other");
+  };
+  EXPECT_GT(seen(true), -3);
+  EXPECT_LT(seen(true), 0);
+  EXPECT_LT(seen(false), seen(true) - 2);
+}
+
 TEST(SizeEvidence, WhatMayBeAPartTellsCarsFromBusesAsAWholeDoes) {
   const FilterModel model = shippedModel();
   for (const double height : {0.2, 1.5, 3.0}) {
