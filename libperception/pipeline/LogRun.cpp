@@ -102,9 +102,16 @@ void LogRun::writeExport(const Scene& scene) {
 
 void LogRun::read(const std::function<void(const Scene&)>& keep) {
   const auto take = [&](bool end) {
-    while (const auto scene = pipeline_.next(end)) {
-      events_.release([&] { put(*scene); });
-      keep(*scene);
+    for (;;) {
+      const std::uint64_t made = pipeline_.made();
+      const auto scene = pipeline_.next(end);
+      for (; held_ < pipeline_.made(); ++held_) events_.hold();  // where it would be put at once
+      if (scene) {
+        events_.release([&] { put(*scene); });
+        keep(*scene);
+      } else if (made == pipeline_.made()) {
+        break;
+      }
     }
     putWeather();
     putLedger();

@@ -88,6 +88,7 @@ class LogRun {
   /// In a live run, when the sensor data of an instant arrived; the last five seconds.
   std::map<Stamp, std::chrono::steady_clock::time_point> arrivals_;
   std::optional<double> latency_;        ///< [s] of the last scene
+  std::uint64_t held_ = 0;               ///< scenes for which events wait or waited
   PipelineObserver* watcher_ = nullptr;  ///< of watch()
   std::vector<Scene>
       before_camera_;  ///< scenes before the first camera observation, which exports need

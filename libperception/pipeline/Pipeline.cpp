@@ -146,8 +146,9 @@ std::vector<std::string> Pipeline::learned() const {
 }
 
 std::optional<Scene> Pipeline::next(bool flush) {
-  while (ready_.empty() && processNext(flush)) continue;
-  if (ready_.empty() && flush) catchUp(), makeScenes(std::nullopt);
+  const std::uint64_t before = made_;
+  while (ready_.empty() && made_ == before && processNext(flush)) continue;
+  if (ready_.empty() && made_ == before && flush) catchUp(), makeScenes(std::nullopt);
   if (ready_.empty()) return std::nullopt;
   Scene scene = std::move(ready_.front());
   ready_.pop_front();

@@ -56,15 +56,17 @@ class Pipeline {
 
   /// Lets the grid of a scan and the way ahead be worked on while the next scan is prepared, where
   /// there are two threads: of a log, whose scenes need not come at once. Each then comes when the
-  /// scene after the next one is due, and is the same; events after it are held until then
-  /// (EventLog::hold()). grid() is not to be asked for until the log has ended. No effect on scenes
-  /// with a lag.
+  /// scene after the next one is due, and is the same. grid() is not to be asked for until the log
+  /// has ended. No effect on scenes with a lag.
   void letGridLag();
 
   void add(const mrpt::obs::CObservation& observation) { add(observation, nullptr); }
   /// One that is not needed any more: its points are moved.
   void add(mrpt::obs::CObservation&& observation) { add(observation, &observation); }
+  /// The next scene; empty: a scene was made but is late (made()), or more observations are needed.
   std::optional<Scene> next(bool flush = false);
+  /// Number of scenes that were made so far, those included that next() has not given yet.
+  std::uint64_t made() const { return made_; }
   /// Reports events known at the end of the log: sensors without frames, labels without a section,
   /// what was learned of detectors, what was taken as phantoms.
   void finish();
@@ -141,6 +143,7 @@ class Pipeline {
   std::optional<Stamp> first_stamp_;
   Stamp last_stamp_;
   std::vector<PipelineObserver*> observers_;
+  std::uint64_t made_ = 0;
   bool grid_lags_ = false;
   struct LateScene {
     OutputSchedule::Instant instant;

@@ -18,7 +18,6 @@ void Pipeline::addOutput(const EgoState& ego, std::int64_t frame) {
     catchUp(kMostLate - 1);
     LateScene& late = late_.emplace_back(LateScene{std::move(instant), sceneOf(ego, frame), 0});
     late.work = grid_work_.add([this, &late] { findPath(late.instant); });
-    events_.hold();
   } else {
     findPath(instant);
     putOutput(std::move(instant));
@@ -69,6 +68,7 @@ void Pipeline::catchUp(std::size_t most) {
 
 Scene Pipeline::sceneOf(const EgoState& ego, std::int64_t frame) {
   const auto scope = timing_.stage("scene");
+  ++made_;
   return scenes_.make(tracker_.mapHypothesis(), ego, frame);
 }
 
