@@ -9,18 +9,15 @@ namespace {
 
 constexpr double kFloor = 0.1 * 0.1;    // [m^2]
 constexpr double kFloorShare = 1. / 9;  // as for nine independent errors
-constexpr double kMostSigmas = 3;       // of a class's width, of what a neighbor adds; assumed
+constexpr double kMostSigmas = 3;       // of a class's width; assumed
 
 void updateSide(double seen, bool complete, double own_sigma, double sigma, double& mean,
                 double& var) {
-  const double variance = own_sigma > 0 ? own_sigma * own_sigma : sigma * sigma;
   if (!complete) {
-    // A neighbor adds to what is seen now and then: the greatest of all views would be too much.
-    const double more = std::max(0.0, seen - mean);
-    const bool sure = more > kMostSigmas * std::sqrt(var + variance);
-    mean += sure ? more : var / (var + variance) * more;
+    mean = std::max(mean, seen);
     return;
   }
+  const double variance = own_sigma > 0 ? own_sigma * own_sigma : sigma * sigma;
   const double floor = own_sigma > 0 ? kFloorShare * variance : kFloor;
   ScalarEstimate side{mean, var};
   scalarUpdate({seen, variance}, side, floor);
