@@ -5,13 +5,13 @@
 #include <utility>
 
 #include "libperception/core/math/LogMath.h"
+#include "libperception/core/system/Parallel.h"
 #include "libperception/filter/associate/Association.h"
 #include "libperception/filter/associate/RankedChildren.h"
 #include "libperception/filter/likelihood/Gating.h"
 #include "libperception/filter/likelihood/LikelihoodTable.h"
 #include "libperception/filter/predict/Prediction.h"
 #include "libperception/filter/state/IndexMap.h"
-#include "libperception/core/system/Parallel.h"
 #include "libperception/filter/update/UpdateCache.h"
 
 namespace perception {

@@ -5,9 +5,9 @@
 #include <memory>
 #include <utility>
 
+#include "libperception/core/system/Parallel.h"
 #include "libperception/filter/predict/Prediction.h"
 #include "libperception/filter/state/ClassFilterMotion.h"
-#include "libperception/core/system/Parallel.h"
 #include "libperception/filter/update/Smoothing.h"
 
 namespace perception {

@@ -8,9 +8,9 @@
 #include <utility>
 
 #include "libperception/core/math/LogMath.h"
+#include "libperception/core/system/Parallel.h"
 #include "libperception/filter/associate/RankedSums.h"
 #include "libperception/filter/associate/ScanParts.h"
-#include "libperception/core/system/Parallel.h"
 
 namespace perception {
 namespace {

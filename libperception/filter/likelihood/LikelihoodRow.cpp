@@ -125,7 +125,7 @@ void PairTerms::add(std::size_t j, const Density& density, double log_detection)
 
 void PairTerms::weighStanding() {
   pair_.stands = track_.stands;
-  if (terms_.still() < 0) return;
+  if (terms_.still() < 0 || !m_.view) return;
   const double still = log_density_[static_cast<std::size_t>(terms_.still())];
   if (still == kMinusInfinity) return;
   const Stamp seen = *std::max_element(track_.last_hit.begin(), track_.last_hit.end());

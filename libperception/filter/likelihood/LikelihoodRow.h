@@ -52,7 +52,8 @@ class PairTerms {
   const ClassValues& mixture() const { return mixture_; }
 
  private:
-  /// Innovations of vehicles as evidence of the class: they may stand.
+  /// Innovations of vehicles that are told by their shape, as evidence of the class: they may
+  /// stand.
   void weighStanding();
 
   const Track& track_;

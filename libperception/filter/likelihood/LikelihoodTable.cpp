@@ -5,6 +5,7 @@
 
 #include "libperception/core/math/Angle.h"
 #include "libperception/core/math/LogMath.h"
+#include "libperception/core/system/Parallel.h"
 #include "libperception/filter/likelihood/AssignmentPrior.h"
 #include "libperception/filter/likelihood/Gating.h"
 #include "libperception/filter/likelihood/LikelihoodRow.h"
@@ -12,7 +13,6 @@
 #include "libperception/filter/likelihood/PairDensity.h"
 #include "libperception/filter/likelihood/PhantomOdds.h"
 #include "libperception/filter/state/ClassFilterMotion.h"
-#include "libperception/core/system/Parallel.h"
 
 namespace perception {
 namespace {

@@ -6,9 +6,9 @@
 #include <iterator>
 #include <utility>
 
+#include "libperception/core/system/Parallel.h"
 #include "libperception/filter/state/BankBatch.h"
 #include "libperception/filter/state/ClassFilterMotion.h"
-#include "libperception/core/system/Parallel.h"
 
 namespace perception {
 namespace {

@@ -4,9 +4,9 @@
 #include <memory>
 #include <utility>
 
+#include "libperception/core/system/Parallel.h"
 #include "libperception/filter/likelihood/AssignmentPrior.h"
 #include "libperception/filter/likelihood/Gating.h"
-#include "libperception/core/system/Parallel.h"
 #include "libperception/filter/update/LanePrior.h"
 #include "libperception/filter/update/Update.h"
 

@@ -8,7 +8,7 @@ namespace perception {
 namespace {
 
 /// Log-odds of a car against a thing that never moves, both seen alike, after `scans` of 0.1 s.
-double carOdds(ObjectShape shape, double speed, int scans) {
+double carOdds(ObjectShape shape, double speed, int scans, bool by_shape = true) {
   FilterModel model = test::exactModel(test::linearClasses());
   ObjectClass& car = model.classes.classes[0];
   car.shape = shape;
@@ -20,7 +20,8 @@ double carOdds(ObjectShape shape, double speed, int scans) {
   const auto first = test::positionScan(sensor, 0, {{1, 2, 0}});
   Track t = newTrack(likelihoodTable({}, first, model).births[0], 0, first, 0, model);
   for (int k = 1; k <= scans; ++k) {
-    const auto scan = test::positionScan(sensor, 0.1 * k, {{1 + 0.1 * k * speed, 2, 0}});
+    auto scan = test::positionScan(sensor, 0.1 * k, {{1 + 0.1 * k * speed, 2, 0}});
+    if (by_shape) scan.measurements[0].view.emplace();
     t = predictTrack(t, scan.state.stamp, model);
     const auto table = likelihoodTable({t}, scan, model);
     t = hitTrack(t, table.tracks[0], table.tracks[0].pairs.at(0), scan,
@@ -35,6 +36,11 @@ TEST(Standing, ACarThatStandsBecomesNoThing) {
   EXPECT_GT(later, first - 0.2);
   EXPECT_LT(carOdds(ObjectShape::kThing, 0, 200), first - 1.5) << "what does not stand does";
   EXPECT_EQ(carOdds(ObjectShape::kVehicle, 0, 0), carOdds(ObjectShape::kThing, 0, 0));
+}
+
+TEST(Standing, WithoutAShapeTheInnovationsCountInFull) {
+  EXPECT_LT(carOdds(ObjectShape::kVehicle, 0, 200, false),
+            carOdds(ObjectShape::kVehicle, 0, 200) - 1);
 }
 
 TEST(Standing, ACarThatMovesIsNoThing) {
