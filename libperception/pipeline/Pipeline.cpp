@@ -240,7 +240,7 @@ void Pipeline::processFrame(std::size_t sensor, SensorFrame& frame) {
     if (returns != nullptr && !grid_lags_) {
       runBoth([&] { filter(sensor, scan, share); }, [&] { addToGrid(frame, *returns); });
     } else {
-      if (returns != nullptr) lagBehind(std::move(frame), returns);
+      if (returns != nullptr) addToGridLater(std::move(frame), returns);
       filter(sensor, scan, share);
     }
   } else {

@@ -93,6 +93,13 @@ class Pipeline {
   std::set<std::uint64_t> livingObjects();
 
  private:
+  /// A scene that waits for its way.
+  struct LateScene {
+    OutputSchedule::Instant instant;
+    Scene scene;
+    std::size_t work;  ///< number of the work that finds its way
+  };
+
   void addTime(Stamp stamp);
   void passGap(Stamp stamp, double gap);
   void startEpoch(Stamp stamp, const std::string& why);
@@ -108,7 +115,7 @@ class Pipeline {
   /// `share`: what weather has left of the sensor's P_D.
   void filter(std::size_t sensor, MeasurementScan& scan, double share);
   void addToGrid(const SensorFrame& frame, const PlacedReturns& returns);
-  void lagBehind(SensorFrame frame, std::shared_ptr<const PlacedReturns> returns);
+  void addToGridLater(SensorFrame frame, std::shared_ptr<const PlacedReturns> returns);
   void addOutput(const EgoState& ego, std::int64_t frame);
   void findPath(OutputSchedule::Instant& instant);
   void putOutput(OutputSchedule::Instant instant);
@@ -145,11 +152,6 @@ class Pipeline {
   std::vector<PipelineObserver*> observers_;
   std::uint64_t made_ = 0;
   bool grid_lags_ = false;
-  struct LateScene {
-    OutputSchedule::Instant instant;
-    Scene scene;
-    std::size_t work;  ///< number of the work that finds its way
-  };
   std::deque<LateScene> late_;
   WorkBehind grid_work_;                   ///< on safety_ and the instants of late_
   std::deque<std::size_t> scans_in_work_;  ///< numbers of the work that adds them to the grid

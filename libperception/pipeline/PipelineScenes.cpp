@@ -44,7 +44,7 @@ void Pipeline::putOutput(OutputSchedule::Instant instant) {
 
 /// Lets a scan of a lidar go into the grid behind this thread, once that is two scans behind at
 /// most.
-void Pipeline::lagBehind(SensorFrame frame, std::shared_ptr<const PlacedReturns> returns) {
+void Pipeline::addToGridLater(SensorFrame frame, std::shared_ptr<const PlacedReturns> returns) {
   if (scans_in_work_.size() == kMostLate) {
     grid_work_.wait(scans_in_work_.front());
     scans_in_work_.pop_front();

@@ -146,12 +146,12 @@ void ClusterSampler::addScan(const SensorFrame& frame, ScanVariant variant,
   const LidarDetections found = front_end_.detect(frame);
   const std::size_t first = samples_.clusters.size();
   points_.clear();
-  for (auto& [segment, descriptor, described, probabilities] :
-       describedClusters(found, cloud, DirectionCells(found.points))) {
+  for (DescribedCluster& cluster : describedClusters(found, cloud, DirectionCells(found.points))) {
+    Segment& segment = cluster.segment;
     ClusterSample sample;
     sample.variant = variant_;
     sample.log = log_, sample.frame = frame.frame, sample.t = frame.stamp - *first_;
-    sample.descriptor = descriptor;
+    sample.descriptor = cluster.descriptor;
     sample.whole = segment.whole < 0 ? -1 : static_cast<int>(first) + segment.whole;
     for (const std::uint32_t i : segment.points)
       sample.place += Vector2(static_cast<double>(found.x[i]), static_cast<double>(found.y[i]));

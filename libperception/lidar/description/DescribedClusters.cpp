@@ -26,6 +26,7 @@ bool isBeyond(const LidarDetections& found, const std::vector<std::uint32_t>& re
   return ahead * ahead + aside * aside > most;
 }
 
+/// What the clusters of a scan are described by.
 struct Describing {
   const LidarDetections& found;
   const ClusterDescriber& describer;
@@ -65,7 +66,7 @@ std::vector<DescribedCluster> describedClusters(const LidarDetections& found,
   sensor.z() -= found.surface.heightAt(sensor.x(), sensor.y());
   const ClusterDescriber describer(found, cloud, cells);
   const SegmentFinder finder(found.x, found.y, found.above, kLeastReturns, kLongest, found.trust,
-                             sensor, {});
+                             sensor);
   std::vector<std::vector<DescribedCluster>> of_tree(finder.trees());
   parallelFor(of_tree.size(), [&](std::size_t tree) {
     of_tree[tree] = clustersOf({found, describer, visit, reach}, finder, tree);

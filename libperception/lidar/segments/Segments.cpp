@@ -30,8 +30,6 @@ PERCEPTION_WIDER void findLengths(const float* __restrict x, const float* __rest
   }
 }
 
-using Groups = std::vector<ReturnGroup>;
-
 /// The segments of a tree, as far as they are found.
 struct Found {
   const SegmentVisitor& visit;
@@ -223,8 +221,8 @@ class SegmentFinder::Trees {
   const std::vector<float>&x_, &y_, &height_, &weight_;
   const LinkLength link_;
   const double min_points_, max_size_;
-  RawVector<double> length_;  ///< [m] link of each return, at the first level's share of 1
-  Groups groups_;             ///< of the first level
+  RawVector<double> length_;         ///< [m] link of each return, at the first level's share of 1
+  std::vector<ReturnGroup> groups_;  ///< of the first level
   std::vector<std::vector<std::uint32_t>> trees_;  ///< their groups
   std::optional<ReturnDirections> directions_;     ///< with the sensor's place
   double step_ = 0;                                ///< [rad] of azimuth between columns; 0: unknown
@@ -243,22 +241,6 @@ std::size_t SegmentFinder::trees() const { return trees_->count(); }
 
 std::vector<Segment> SegmentFinder::find(std::size_t tree, const SegmentVisitor& visit) const {
   return trees_->find(tree, visit);
-}
-
-std::vector<Segment> findSegments(const std::vector<float>& x, const std::vector<float>& y,
-                                  const std::vector<float>& height, double min_points,
-                                  double max_size, const std::vector<float>& weight,
-                                  const std::optional<Vector3>& sensor, const LinkLength& link) {
-  const SegmentFinder finder(x, y, height, min_points, max_size, weight, sensor, link);
-  std::vector<Segment> segments;
-  for (std::size_t tree = 0; tree < finder.trees(); ++tree) {
-    const auto first = static_cast<int>(segments.size());
-    for (Segment& segment : finder.find(tree)) {
-      if (segment.whole >= 0) segment.whole += first;
-      segments.push_back(std::move(segment));
-    }
-  }
-  return segments;
 }
 
 }  // namespace perception

@@ -46,7 +46,7 @@ class SegmentFinder {
   SegmentFinder(const std::vector<float>& x, const std::vector<float>& y,
                 const std::vector<float>& height, double min_points, double max_size,
                 const std::vector<float>& weight, const std::optional<Vector3>& sensor,
-                const LinkLength& link);
+                const LinkLength& link = {});
   ~SegmentFinder();
 
   /// Number of trees: groups of the first level, or what grazedSurfaces() joins of them.
@@ -59,12 +59,5 @@ class SegmentFinder {
   class Trees;
   std::unique_ptr<const Trees> trees_;
 };
-
-/// The segments of all trees, in their order; `whole` is an index into all of them.
-std::vector<Segment> findSegments(const std::vector<float>& x, const std::vector<float>& y,
-                                  const std::vector<float>& height, double min_points,
-                                  double max_size, const std::vector<float>& weight = {},
-                                  const std::optional<Vector3>& sensor = {},
-                                  const LinkLength& link = {});
 
 }  // namespace perception

@@ -10,6 +10,19 @@
 namespace perception {
 namespace {
 
+/// The segments of all trees, in their order; `whole` is an index into all of them.
+std::vector<Segment> segmentsOf(const SegmentFinder& finder) {
+  std::vector<Segment> segments;
+  for (std::size_t tree = 0; tree < finder.trees(); ++tree) {
+    const auto first = static_cast<int>(segments.size());
+    for (Segment& segment : finder.find(tree)) {
+      if (segment.whole >= 0) segment.whole += first;
+      segments.push_back(std::move(segment));
+    }
+  }
+  return segments;
+}
+
 struct Obstacles {
   std::vector<float> x, y, height, trust;
 
@@ -27,7 +40,7 @@ struct Obstacles {
     }
   }
   std::vector<Segment> segments(double min_points = 8, double max_size = 20) const {
-    return findSegments(x, y, height, min_points, max_size, trust);
+    return segmentsOf({x, y, height, min_points, max_size, trust, {}});
   }
 };
 
@@ -129,7 +142,7 @@ TEST(Segments, PartsThatAreNotWantedAreNotLookedFor) {
   std::vector<Segment> visited;
   const auto visit = [&](bool wanted) {
     visited.clear();
-    const SegmentFinder finder(o.x, o.y, o.height, 8, 20, o.trust, {}, {});
+    const SegmentFinder finder(o.x, o.y, o.height, 8, 20, o.trust, {});
     EXPECT_EQ(finder.trees(), 1u);
     return finder.find(0, [&visited, wanted](const Segment& s) {
       visited.push_back(s);
@@ -169,7 +182,7 @@ TEST(Segments, ARowOfBeamsOnAWallIsNothingOfItsOwn) {
       if (height > 0.3 && height < 3) wall.add(range * std::sin(azimuth), 9, height);
     }
   }
-  const auto segments = findSegments(wall.x, wall.y, wall.height, 8, 20, wall.trust, sensor);
+  const auto segments = segmentsOf({wall.x, wall.y, wall.height, 8, 20, wall.trust, sensor});
   for (const Segment& segment : segments) {
     double least = 90, most = -90;
     for (const std::uint32_t i : segment.points) {
@@ -180,7 +193,7 @@ TEST(Segments, ARowOfBeamsOnAWallIsNothingOfItsOwn) {
     }
     EXPECT_GT(most - least, 1) << segment.points.size() << " returns of one beam";
   }
-  EXPECT_GT(findSegments(wall.x, wall.y, wall.height, 8, 20).size(), segments.size())
+  EXPECT_GT(wall.segments().size(), segments.size())
       << "without the sensor's place the beams are not known";
 }
 
@@ -201,7 +214,7 @@ Obstacles wallAndColumns(int columns) {
 TEST(Segments, UpToThreeColumnsOfALongSurfaceAreNothingOfTheirOwn) {
   const auto found = [](int columns) {
     const Obstacles o = wallAndColumns(columns);
-    return findSegments(o.x, o.y, o.height, 8, 20, o.trust, Vector3(0, 0, 1)).size();
+    return segmentsOf({o.x, o.y, o.height, 8, 20, o.trust, Vector3(0, 0, 1)}).size();
   };
   EXPECT_EQ(found(2), 0u);
   EXPECT_EQ(found(3), 0u);
