@@ -1,15 +1,17 @@
 #!/usr/bin/python3
-"""What a scan costs: millions of instructions by stage, and milliseconds where the stage is timed.
+"""What a scene costs on several drives: millions of instructions by stage, and milliseconds where the stage is timed.
 
-Tracks two logs of which the longer one begins with the shorter one, with one thread under callgrind, and divides the
-difference by the number of scenes in it: what a start costs is left out. The milliseconds are of the longer log without
-callgrind (timing.json), of stages by the clock, of all as CPU time with the start; other programs at work make them
-longer, instructions stay the same.
+A drive is NAME:INI:SENSORS:LOG, or NAME:INI:SENSORS:LOG:SHORTER with a log that is the beginning of the first one: its cost
+is taken off, so that the start of the program is left out. Runs have one thread; callgrind counts the instructions. The
+milliseconds are of the longer log without callgrind (timing.json), of stages by the clock, of all as CPU time with the
+start; other programs at work make them longer, instructions stay the same.
 
   for n in 9 19; do build/bin/perception-import kitti ... --last $n -o out/k$n.rawlog; done
-  tests/bench/speed/price.py -c ini/kitti.ini --set run.sensors=L out/k9.rawlog out/k19.rawlog [--base out/price.json]
+  tests/bench/speed/price.py demo:ini/demo.ini:C+L+R:rawlogs/demo.rawlog front:ini/kitti.ini:L:out/k19.rawlog:out/k9.rawlog
 
-Writes OUT/price.json. --base: that of another version; stages that grew by more than 5 % are marked.
+Writes OUT/price.json. --base: that of another version [tests/bench/speed/price.json: of the last release]; stages that
+grew by more than 5 % are marked, and the program ends with 1. --peer: whole_bench, which runs the same drives beside
+pipelines of other libraries.
 """
 import argparse
 import json
@@ -87,34 +89,61 @@ def milliseconds(args, log):
     return {**of_stage, 'all': 1e3 * timing['cpu_seconds'] / scenes}
 
 
-def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument('logs', nargs=2, help='the shorter one first')
-    parser.add_argument('-c', '--config', required=True)
-    parser.add_argument('-o', '--output', default='out/price')
-    parser.add_argument('--set', action='append', default=[])
-    parser.add_argument('--track', default='build/bin/perception-track')
-    parser.add_argument('--base', help='price.json of another version')
-    args = parser.parse_args()
-    os.makedirs(args.output, exist_ok=True)
-    base = {}
-    if args.base:
-        with open(args.base) as f:
-            base = json.load(f)
-    (short, few), (long, many) = (instructions(args, log, name) for log, name in zip(args.logs, ('short', 'long')))
-    if many <= few:
-        sys.exit('%s has no more scenes than %s' % (args.logs[1], args.logs[0]))
-    times = milliseconds(args, args.logs[1])
-    price = {stage: (long[stage] - short[stage]) / (many - few) for stage in STAGES}
-    print('%-16s %14s %8s' % ('a scene', 'M instructions', 'ms'))
-    for stage, cost in price.items():
+def price(args, drive):
+    """Millions of instructions a scene by stage, and milliseconds."""
+    name, config, sensors, long, *short = drive.split(':')
+    args.config, args.set = config, ['run.sensors=' + sensors]
+    cost, scenes = instructions(args, long, name)
+    if short:
+        less, fewer = instructions(args, short[0], name + '_short')
+        if scenes <= fewer:
+            sys.exit('%s has no more scenes than %s' % (long, short[0]))
+        cost, scenes = {stage: cost[stage] - less[stage] for stage in cost}, scenes - fewer
+    return {stage: c / scenes for stage, c in cost.items()}, milliseconds(args, long)
+
+
+def show(name, cost, times, base):
+    """Prints a drive's table; whether a stage grew."""
+    print('%-16s %14s %8s' % (name, 'M instructions', 'ms'))
+    grew = False
+    for stage, c in cost.items():
         time = '%8.2f' % times[stage] if stage in times else ' ' * 8
         before = base.get(stage)
-        said = '' if not before else '  before %.2f%s' % (before, ', GREW' if cost > GROWN * before else '')
-        print('%-16s %14.2f %s%s' % (stage, cost, time, said))
+        more = bool(before) and c > GROWN * before
+        print('%-16s %14.2f %s%s' % (stage, c, time, '' if not before else '  before %.2f%s' % (before, ', GREW' if more else '')))
+        grew |= more
+    return grew
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument('drives', nargs='+', metavar='NAME:INI:SENSORS:LOG[:SHORTER]')
+    parser.add_argument('-o', '--output', default='out/price')
+    parser.add_argument('--track', default='build/bin/perception-track')
+    parser.add_argument('--base', default='tests/bench/speed/price.json')
+    parser.add_argument('--peer', help='build-bench/bin/whole_bench')
+    args = parser.parse_args()
+    for drive in args.drives:
+        if drive.count(':') not in (3, 4):
+            parser.error('%s: expected NAME:INI:SENSORS:LOG or NAME:INI:SENSORS:LOG:SHORTER' % drive)
+    os.makedirs(args.output, exist_ok=True)
+    base = {}
+    if os.path.exists(args.base):
+        with open(args.base) as f:
+            base = json.load(f)
+    prices, grew = {}, False
+    for drive in args.drives:
+        name = drive.split(':')[0]
+        prices[name], times = price(args, drive)
+        grew |= show(name, prices[name], times, base.get(name, {}))
     with open(os.path.join(args.output, 'price.json'), 'w') as f:
-        json.dump(price, f, indent=1)
+        json.dump(prices, f, indent=1)
+        f.write('\n')
+    if args.peer:
+        parts = [drive.split(':') for drive in args.drives]
+        subprocess.run([args.peer] + [word for p in parts for word in (p[1], p[3], p[2])], check=True)
+    return 1 if grew else 0
 
 
 if __name__ == '__main__':
-    main()
+    sys.exit(main())
