@@ -83,6 +83,8 @@ void CRbpfTracker::prediction_and_update_pfOptimalProposal(const mrpt::obs::CAct
   if (!scan_)
     throw Error(ExitCode::kInternal, "CRbpfTracker: executed without a scan; use process()");
   Posterior before;
+  before.hypotheses.reserve(m_particles.size());
+  before.log_weights.reserve(m_particles.size());
   for (auto& p : m_particles) {
     before.hypotheses.push_back(std::move(p.d));
     before.log_weights.push_back(p.log_w);

@@ -250,19 +250,28 @@ StepResult step(const Posterior& before, const MeasurementScan& scan, const Filt
 MapHypothesis mapHypothesis(const Posterior& posterior) {
   struct Group {
     std::size_t first;
-    double log_weight;
+    double most;     // of its slots' log weights
+    double sum = 0;  // of its slots' weights, as shares of the largest one
+    double log_weight = 0;
   };
+  const std::vector<double>& weights = posterior.log_weights;
   IndexMap numbers(posterior.hypotheses.size());
   std::vector<Group> groups;  // in order of first appearance
-  for (std::size_t i = 0; i < posterior.hypotheses.size(); ++i) {
+  std::vector<std::size_t> of_slot;
+  of_slot.reserve(weights.size());
+  for (std::size_t i = 0; i < weights.size(); ++i) {
     const auto [number, fresh] = numbers.numberOf(posterior.hypotheses[i]->key);
-    if (fresh) {
-      groups.push_back({i, posterior.log_weights[i]});
-    } else {
-      double& w = groups[number].log_weight;
-      w = logAddExp(w, posterior.log_weights[i]);
-    }
+    if (fresh) groups.push_back({i, weights[i]});
+    groups[number].most = std::max(groups[number].most, weights[i]);
+    of_slot.push_back(number);
   }
+  for (std::size_t i = 0; i < weights.size(); ++i) {
+    Group& group = groups[of_slot[i]];
+    group.sum += group.most == kMinusInfinity ? 1 : std::exp(weights[i] - group.most);
+  }
+  std::vector<double> of_groups;
+  for (Group& group : groups)
+    of_groups.push_back(group.log_weight = group.most + std::log(group.sum));
   // Ties go to the earlier slot.
   const auto best =
       std::max_element(groups.begin(), groups.end(),
@@ -271,7 +280,7 @@ MapHypothesis mapHypothesis(const Posterior& posterior) {
   out.distinct = groups.size();
   if (best == groups.end()) return out;
   out.slot = best->first;
-  out.probability = std::exp(best->log_weight - logSumExp(posterior.log_weights));
+  out.probability = std::exp(best->log_weight - logSumExp(of_groups));
   return out;
 }
 

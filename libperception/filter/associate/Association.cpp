@@ -43,50 +43,67 @@ struct Choices {
     }
     total = logSumExp(log_odds);
   }
-
-  std::size_t draw(Rng& rng) const {
-    double u = rng.uniform();
-    std::size_t chosen = 0;
-    for (; chosen + 1 < log_odds.size(); ++chosen) {
-      u -= std::exp(log_odds[chosen] - total);
-      if (u < 0) break;
-    }
-    return chosen;
-  }
 };
 
 /// Slots with equal samples so far.
 struct Branch {
   SampledAssociation sampled;
   std::vector<int> taken_by;  // by place of a track: its measurement or -1
+  Rng rng;                    // stream of the first slot
 
+  explicit Branch(const RngKey& key) : rng(key) {}
   void take(std::size_t k, int cause) {
     sampled.association.cause[k] = cause;
     if (cause >= 0) taken_by[static_cast<std::size_t>(cause)] = static_cast<int>(k);
   }
 };
 
+/// By cause the slots that draw it, ascending. The draws are stratified: n slots take the n evenly
+/// spaced quantiles from a random one on, around the circle. Each slot draws each cause with its
+/// probability, and the causes get their shares of the slots but for one.
+std::vector<std::vector<std::uint32_t>> drawn(const Choices& choices,
+                                              const std::vector<std::uint32_t>& slots, Rng& rng) {
+  const double begin = rng.uniform(), step = 1 / static_cast<double>(slots.size());
+  std::vector<std::vector<std::uint32_t>> parts(choices.cause.size());
+  std::size_t chosen = 0;
+  double end = std::exp(choices.log_odds[0] - choices.total);  // of the chosen cause's quantiles
+  bool around = false;
+  for (std::size_t i = 0; i < slots.size(); ++i) {
+    double quantile = begin + static_cast<double>(i) * step;
+    if (quantile >= 1) {
+      if (!around) chosen = 0, end = std::exp(choices.log_odds[0] - choices.total);
+      around = true;
+      quantile -= 1;
+    }
+    while (quantile >= end && chosen + 1 < parts.size())
+      end += std::exp(choices.log_odds[++chosen] - choices.total);
+    parts[chosen].push_back(slots[i]);
+  }
+  return parts;
+}
+
 /// Splits the slots of `branch` by their sample for measurement k; all but the first part are
-/// appended to `out`.
-void split(std::size_t k, const Choices& choices, std::vector<Rng>& rngs, Branch& branch,
+/// appended to `out`. `key`: of the scan's draws.
+void split(std::size_t k, const Choices& choices, const RngKey& key, Branch& branch,
            std::vector<Branch>& out) {
   branch.sampled.association.log_weight += choices.total;
   if (choices.cause.size() == 1) {
     branch.take(k, choices.cause[0]);
     return;
   }
-  std::vector<std::vector<std::uint32_t>> parts(choices.cause.size());
-  for (const std::uint32_t i : branch.sampled.slots) parts[choices.draw(rngs[i])].push_back(i);
-  std::size_t first = 0;
-  while (parts[first].empty()) ++first;
-  for (std::size_t c = first + 1; c < parts.size(); ++c) {
-    if (parts[c].empty()) continue;
+  auto parts = drawn(choices, branch.sampled.slots, branch.rng);
+  const std::uint32_t first_slot = branch.sampled.slots.front();
+  std::size_t same = 0;  // the part that goes on with the branch's stream
+  while (parts[same].empty() || parts[same].front() != first_slot) ++same;
+  for (std::size_t c = 0; c < parts.size(); ++c) {
+    if (c == same || parts[c].empty()) continue;
     out.push_back(branch);
+    out.back().rng = Rng(key.withSlot(parts[c].front()));
     out.back().sampled.slots = std::move(parts[c]);
     out.back().take(k, choices.cause[c]);
   }
-  branch.sampled.slots = std::move(parts[first]);
-  branch.take(k, choices.cause[first]);
+  branch.sampled.slots = std::move(parts[same]);
+  branch.take(k, choices.cause[same]);
 }
 
 }  // namespace
@@ -122,18 +139,12 @@ std::vector<SampledAssociation> sampleAssociations(const TrackIndices& tracks,
                                                    std::vector<std::uint32_t> slots,
                                                    const RngKey& key) {
   const std::vector<int> place = placesOf(tracks, index);
-  std::vector<std::uint32_t> streams = slots;  // a branch names slots by their index in here
-  std::vector<Rng> rngs;
-  rngs.reserve(streams.size());
-  for (const std::uint32_t s : streams) rngs.emplace_back(key.withSlot(s));
-  std::iota(slots.begin(), slots.end(), 0u);
-
-  std::vector<Branch> branches(1);
+  std::vector<Branch> branches(1, Branch(key.withSlot(slots.front())));
   Branch& root = branches.front();
+  root.taken_by.assign(tracks.size(), -1);
   root.sampled.association.cause.assign(index.measurements(), Association::kNew);
   root.sampled.association.log_weight = logAllMissed(tracks, index);
   root.sampled.slots = std::move(slots);
-  root.taken_by.assign(tracks.size(), -1);
   Choices choices;
   for (const std::size_t k : order) {
     const std::size_t before = branches.size();
@@ -142,14 +153,13 @@ std::vector<SampledAssociation> sampleAssociations(const TrackIndices& tracks,
       if (choices.total == kMinusInfinity)
         continue;  // zero density under every cause: ignored as unmodeled clutter
       Branch branch = std::move(branches[b]);
-      split(k, choices, rngs, branch, branches);
+      split(k, choices, key, branch, branches);
       branches[b] = std::move(branch);
     }
   }
   std::vector<SampledAssociation> out;
   out.reserve(branches.size());
   for (Branch& b : branches) {
-    for (std::uint32_t& s : b.sampled.slots) s = streams[s];
     for (int& c : b.sampled.association.cause)
       if (c >= 0) c = static_cast<int>(tracks[static_cast<std::size_t>(c)]);
     out.push_back(std::move(b.sampled));

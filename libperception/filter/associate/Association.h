@@ -56,9 +56,10 @@ struct SampledAssociation {
 
 /// Pass 3 for one hypothesis and the slots that hold it: each slot samples the cause of one
 /// measurement after the other from the exact conditional, the optimal proposal of [radecki2016]
-/// (method.md 5.4), by table look-up. Slots with equal samples so far share the work. `tracks` are
-/// indices of the hypothesis's tracks into the distinct ones; `order` is the scan's random order of
-/// measurements, the same for all hypotheses; slot i draws from stream i of `key`.
+/// (method.md 5.4), by table look-up. Slots with equal samples so far share the work, and their
+/// draws are stratified with the stream of `key` of the first one. `tracks` are indices of the
+/// hypothesis's tracks into the distinct ones; `order` is the scan's random order of measurements,
+/// the same for all hypotheses; `slots` are ascending and not empty.
 std::vector<SampledAssociation> sampleAssociations(const TrackIndices& tracks,
                                                    const AssociationIndex& index,
                                                    const std::vector<std::size_t>& order,

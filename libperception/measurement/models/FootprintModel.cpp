@@ -1,6 +1,7 @@
 #include "libperception/measurement/models/FootprintModel.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "libperception/core/math/LogMath.h"
@@ -14,9 +15,9 @@ constexpr double kWidestClutter = 10;  // [m] clutter is uniform in width up to 
 constexpr double kWidestAngle = 0.5;   // [rad] the same where the range is not seen
 constexpr double kSideSigma =
     0.5;  // [m] a complete side as a measurement of the extent (method.md 5.13)
-constexpr double kBoxSigma = 0.2;  // [m] of a seen box's faces
-constexpr double kSureYaw = 0.35;  // [rad] boxes of less certain direction give no heading
-constexpr int kAngles = 8;         // of the average over unknown headings
+constexpr double kBoxSigma = 0.2;   // [m] of a seen box's faces
+constexpr double kSureYaw = 0.35;   // [rad] boxes of less certain direction give no heading
+constexpr std::size_t kAngles = 8;  // of the average over unknown headings
 /// Shares of objects of any width, so that no class is excluded by size alone: as range times
 /// angle, and across the line of sight, where two objects may be one cluster (method.md 5.14).
 constexpr double kAnyWidth = 0.001, kAnyBoxWidth = 0.05;
@@ -35,18 +36,28 @@ double normalDensity(double x, double variance) {
   return std::exp(-0.5 * x * x / variance) / std::sqrt(kTwoPi * variance);
 }
 
+/// Sines and cosines of evenly spaced headings from 0 to 90 degrees.
+struct Headings {
+  std::array<double, kAngles> sine, cosine;
+  Headings() {
+    for (std::size_t i = 0; i < kAngles; ++i) {
+      const double angle = (static_cast<double>(i) + 0.5) * (kPi / 2) / kAngles;
+      sine[i] = std::sin(angle), cosine[i] = std::cos(angle);
+    }
+  }
+};
+
 /// Density [1/m] of the visible width of the objects of a class, headings uniform, measured with
 /// variance `noise` [m^2] (method.md 4.1).
 double widthDensity(const ObjectClass& c, double width, double noise) {
+  static const Headings headings;
   const double l2 = c.length_sigma * c.length_sigma, w2 = c.width_sigma * c.width_sigma;
+  if (!c.motion->has_heading)
+    return normalDensity(width - 0.5 * (c.length + c.width), 0.25 * (l2 + w2) + noise);
   double sum = 0;
-  for (int i = 0; i < kAngles; ++i) {
-    const double angle = (i + 0.5) * (kPi / 2) / kAngles;
-    const double s = std::sin(angle), k = std::cos(angle);
-    const double mean =
-        c.motion->has_heading ? c.length * s + c.width * k : 0.5 * (c.length + c.width);
-    const double spread = c.motion->has_heading ? l2 * s * s + w2 * k * k : 0.25 * (l2 + w2);
-    sum += normalDensity(width - mean, spread + noise);
+  for (std::size_t i = 0; i < kAngles; ++i) {
+    const double s = headings.sine[i], k = headings.cosine[i];
+    sum += normalDensity(width - (c.length * s + c.width * k), l2 * s * s + w2 * k * k + noise);
   }
   return sum / kAngles;
 }
