@@ -17,7 +17,6 @@
 #include "libperception/sensors/observations/registerClasses.h"
 #include "studies/association/LogParticlesStudy.h"
 #include "studies/association/ParticlesStudy.h"
-#include "studies/gps/GpsStudy.h"
 #include "studies/labels/LabelsStudy.h"
 #include "studies/motion/EgoStudy.h"
 #include "studies/paper/MonteCarloStudy.h"
@@ -30,10 +29,9 @@ struct Study {
   const char* name;
   const char* description;
   StudyReport (*run)(StudyApp& app);
-  bool recordings = false;  ///< reads a folder of them
-  bool log = false;         ///< takes a rawlog
-  bool scenario = false;    ///< reads a scenario INI
-  bool labels = false;      ///< reads rawlogs with detections and truth
+  bool log = false;       ///< takes a rawlog
+  bool scenario = false;  ///< reads a scenario INI
+  bool labels = false;    ///< reads rawlogs with detections and truth
   void (*declare)(CLI::App& cli, StudyApp& app) = nullptr;  ///< options of its own
   bool snow = false;                                        ///< reads rawlogs with labelled snow
 };
@@ -53,7 +51,7 @@ const Study kStudies[] = {
        if (app.runs > 0) p.scenes = app.runs;
        return particlesStudy(p);
      },
-     false, true},
+     true},
     {"ego", "ego pose from GNSS, IMU and wheels (simulated)",
      [](StudyApp& app) {
        EgoStudyParams p;
@@ -65,48 +63,37 @@ const Study kStudies[] = {
        if (app.runs > 0) p.runs = app.runs;
        return egoStudy(p);
      },
-     false, false, true},
-    {"gps", "travel modes classified from positions at 1 Hz (recordings)",
-     [](StudyApp& app) {
-       GpsParams p;
-       p.seed = app.seed;
-       p.folder = app.folder;
-       p.stationary = app.stationary;
-       if (app.runs > 0) p.draws = app.runs;
-       return gpsStudy(p);
-     },
-     true},
+     false, true},
     {"labels", "a detector's labels dropped or flipped: joint tracker and one per class (rawlogs)",
-     [](StudyApp& app) { return app.labelsOfLogs(); }, false, false, false, true},
+     [](StudyApp& app) { return app.labelsOfLogs(); }, false, false, true},
     {"resolution", "effect of a panorama's resolution: the camera tables of Radecki et al.",
      [](StudyApp& app) {
        app.resolution.seed = app.seed;
        return resolutionStudy(app.resolution);
      },
-     false, false, false, false,
+     false, false, false,
      [](CLI::App& cli, StudyApp& app) { declareResolution(cli, app.resolution); }},
     {"paper", "every table of Radecki et al. beside its own numbers (simulated)",
      [](StudyApp& app) {
        app.paper.site.seed = app.seed;
        return paperStudy(app.paper);
      },
-     false, false, false, false,
-     [](CLI::App& cli, StudyApp& app) { declarePaper(cli, app.paper); }},
+     false, false, false, [](CLI::App& cli, StudyApp& app) { declarePaper(cli, app.paper); }},
     {"trust", "trust of lidar returns against labels of points (a rawlog)",
-     [](StudyApp& app) { return trustStudy(app.trust); }, false, false, false, false,
+     [](StudyApp& app) { return trustStudy(app.trust); }, false, false, false,
      [](CLI::App& cli, StudyApp& app) { declareTrust(cli, app.trust); }},
     {"safety", "false and missed stops, phantom tracks, against labels of points (rawlogs)",
-     [](StudyApp& app) { return safetyStudy(app.safety, app.seed); }, false, false, false, false,
+     [](StudyApp& app) { return safetyStudy(app.safety, app.seed); }, false, false, false,
      [](CLI::App& cli, StudyApp& app) { declareSafety(cli, app.safety); }},
     {"obstacles",
      "stops for shapes that no detector was taught, against the stopping distance (simulated)",
      [](StudyApp& app) { return obstaclesStudy(app.obstacles, app.seed); }, false, false, false,
-     false, [](CLI::App& cli, StudyApp& app) { declareObstacles(cli, app.obstacles); }},
+     [](CLI::App& cli, StudyApp& app) { declareObstacles(cli, app.obstacles); }},
     {"weather", "type and rates of the weather by lidar scans (rawlogs, simulated weather)",
-     [](StudyApp& app) { return weatherStudy(app.weather, app.seed); }, false, false, false, false,
+     [](StudyApp& app) { return weatherStudy(app.weather, app.seed); }, false, false, false,
      [](CLI::App& cli, StudyApp& app) { declareWeather(cli, app.weather); }},
     {"snow-realism", "whether a forest tells simulated from recorded snow (labelled rawlogs)",
-     [](StudyApp& app) { return app.snowOfLogs(); }, false, false, false, false, nullptr, true},
+     [](StudyApp& app) { return app.snowOfLogs(); }, false, false, false, nullptr, true},
 };
 
 /// --range [m] and --fov-deg [deg] of what counts.
@@ -130,7 +117,6 @@ void StudyApp::declare(CLI::App& cli) {
         ->check(CLI::Range(0, 1000000));
     sub->add_option("--threads", threads, "Number of threads; 0 = as many as the machine has")
         ->check(CLI::Range(0, 4096));
-    if (s.recordings) declareRecordings(*sub);
     if (s.log) declareLog(*sub);
     if (s.labels) declareLabels(*sub);
     if (s.declare) s.declare(*sub, *this);
@@ -143,15 +129,6 @@ void StudyApp::declare(CLI::App& cli) {
     }
     sub->callback([this, name = std::string(s.name)] { study = name; });
   }
-}
-
-void StudyApp::declareRecordings(CLI::App& sub) {
-  sub.add_option("-i,--input", folder,
-                 "Folder with pedestrian/, cyclist/, car/, bus/, each with CLASS_USER_....nmea, "
-                 ".gpx or .csv files")
-      ->required();
-  sub.add_option("--stationary", stationary,
-                 "Recording of a receiver at rest: its covariance is R");
 }
 
 void StudyApp::declareLog(CLI::App& sub) {

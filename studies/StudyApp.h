@@ -24,8 +24,6 @@ class StudyApp : public App {
   std::string study;                 ///< the name of the experiment
   std::uint64_t seed = 1;            ///< --seed
   int runs = 0;                      ///< --runs; 0 = default of the study
-  std::string folder;                ///< gps: recordings by class
-  std::string stationary;            ///< gps: recording of a receiver at rest
   std::string log;                   ///< particles: a rawlog instead of simulated positions
   std::string duc_config;            ///< particles: --duc, INI of DUC's tracker
   std::string truth_file;            ///< particles: --truth of the log
@@ -56,7 +54,6 @@ class StudyApp : public App {
   StudyReport snowOfLogs();
 
  private:
-  void declareRecordings(CLI::App& sub);
   void declareLog(CLI::App& sub);
   void declareLabels(CLI::App& sub);
   void declareSnow(CLI::App& sub);

@@ -79,10 +79,10 @@ StudyTable resolutionNotRun() {
   return table;
 }
 
-/// Positions of people and vehicles are recordings: perception-study gps.
+/// Positions of people and vehicles are recordings, and none of the paper's is at hand.
 StudyTable gpsNotRun() {
   return {"gps",
-          "Classes from positions at 1 Hz: not run, needs recordings (perception-study gps)",
+          "Classes from positions at 1 Hz: not run, needs recordings (docs/decisions/formats.md)",
           {"class", "right", "paper: right"},
           {{"Pedestrian", "", "100 %"},
            {"Car", "", "99 %"},
