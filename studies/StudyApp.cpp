@@ -15,7 +15,6 @@
 #include "libperception/sensors/observations/CObservationObjectDetections.h"
 #include "libperception/sensors/observations/Conversions.h"
 #include "libperception/sensors/observations/registerClasses.h"
-#include "studies/association/LogParticlesStudy.h"
 #include "studies/association/ParticlesStudy.h"
 #include "studies/labels/LabelsStudy.h"
 #include "studies/motion/EgoStudy.h"
@@ -29,7 +28,6 @@ struct Study {
   const char* name;
   const char* description;
   StudyReport (*run)(StudyApp& app);
-  bool log = false;       ///< takes a rawlog
   bool scenario = false;  ///< reads a scenario INI
   bool labels = false;    ///< reads rawlogs with detections and truth
   void (*declare)(CLI::App& cli, StudyApp& app) = nullptr;  ///< options of its own
@@ -44,14 +42,12 @@ const Study kStudies[] = {
        if (app.runs > 0) p.repeats = app.runs;
        return monteCarloStudy(p);
      }},
-    {"particles", "number of objects by particles and birth model, simulated street or a rawlog",
+    {"particles", "number of objects by particles and birth model (simulated street)",
      [](StudyApp& app) {
-       if (!app.log.empty()) return app.particlesOfLog();
        ParticlesParams p;
        if (app.runs > 0) p.scenes = app.runs;
        return particlesStudy(p);
-     },
-     true},
+     }},
     {"ego", "ego pose from GNSS, IMU and wheels (simulated)",
      [](StudyApp& app) {
        EgoStudyParams p;
@@ -63,47 +59,37 @@ const Study kStudies[] = {
        if (app.runs > 0) p.runs = app.runs;
        return egoStudy(p);
      },
-     false, true},
+     true},
     {"labels", "a detector's labels dropped or flipped: joint tracker and one per class (rawlogs)",
-     [](StudyApp& app) { return app.labelsOfLogs(); }, false, false, true},
+     [](StudyApp& app) { return app.labelsOfLogs(); }, false, true},
     {"resolution", "effect of a panorama's resolution: the camera tables of Radecki et al.",
      [](StudyApp& app) {
        app.resolution.seed = app.seed;
        return resolutionStudy(app.resolution);
      },
-     false, false, false,
-     [](CLI::App& cli, StudyApp& app) { declareResolution(cli, app.resolution); }},
+     false, false, [](CLI::App& cli, StudyApp& app) { declareResolution(cli, app.resolution); }},
     {"paper", "every table of Radecki et al. beside its own numbers (simulated)",
      [](StudyApp& app) {
        app.paper.site.seed = app.seed;
        return paperStudy(app.paper);
      },
-     false, false, false, [](CLI::App& cli, StudyApp& app) { declarePaper(cli, app.paper); }},
+     false, false, [](CLI::App& cli, StudyApp& app) { declarePaper(cli, app.paper); }},
     {"trust", "trust of lidar returns against labels of points (a rawlog)",
-     [](StudyApp& app) { return trustStudy(app.trust); }, false, false, false,
+     [](StudyApp& app) { return trustStudy(app.trust); }, false, false,
      [](CLI::App& cli, StudyApp& app) { declareTrust(cli, app.trust); }},
     {"safety", "false and missed stops, phantom tracks, against labels of points (rawlogs)",
-     [](StudyApp& app) { return safetyStudy(app.safety, app.seed); }, false, false, false,
+     [](StudyApp& app) { return safetyStudy(app.safety, app.seed); }, false, false,
      [](CLI::App& cli, StudyApp& app) { declareSafety(cli, app.safety); }},
     {"obstacles",
      "stops for shapes that no detector was taught, against the stopping distance (simulated)",
-     [](StudyApp& app) { return obstaclesStudy(app.obstacles, app.seed); }, false, false, false,
+     [](StudyApp& app) { return obstaclesStudy(app.obstacles, app.seed); }, false, false,
      [](CLI::App& cli, StudyApp& app) { declareObstacles(cli, app.obstacles); }},
     {"weather", "type and rates of the weather by lidar scans (rawlogs, simulated weather)",
-     [](StudyApp& app) { return weatherStudy(app.weather, app.seed); }, false, false, false,
+     [](StudyApp& app) { return weatherStudy(app.weather, app.seed); }, false, false,
      [](CLI::App& cli, StudyApp& app) { declareWeather(cli, app.weather); }},
     {"snow-realism", "whether a forest tells simulated from recorded snow (labelled rawlogs)",
-     [](StudyApp& app) { return app.snowOfLogs(); }, false, false, false, nullptr, true},
+     [](StudyApp& app) { return app.snowOfLogs(); }, false, false, nullptr, true},
 };
-
-/// --range [m] and --fov-deg [deg] of what counts.
-void addSector(CLI::App& sub, const char* range_help, const char* fov_help, double& range,
-               double& fov_deg) {
-  sub.add_option("--range", range, range_help)->capture_default_str()->check(CLI::Range(0.1, 1e4));
-  sub.add_option("--fov-deg", fov_deg, fov_help)
-      ->capture_default_str()
-      ->check(CLI::Range(0.1, 360.0));
-}
 
 }  // namespace
 
@@ -117,7 +103,6 @@ void StudyApp::declare(CLI::App& cli) {
         ->check(CLI::Range(0, 1000000));
     sub->add_option("--threads", threads, "Number of threads; 0 = as many as the machine has")
         ->check(CLI::Range(0, 4096));
-    if (s.log) declareLog(*sub);
     if (s.labels) declareLabels(*sub);
     if (s.declare) s.declare(*sub, *this);
     if (s.snow) declareSnow(*sub);
@@ -131,21 +116,6 @@ void StudyApp::declare(CLI::App& cli) {
   }
 }
 
-void StudyApp::declareLog(CLI::App& sub) {
-  sub.add_option("--log", log, "Rawlog to be tracked, instead of simulated positions");
-  sub.add_option("-c,--config", config_file, "INI of the vehicle, for --log");
-  sub.add_option("--duc", duc_config, "INI of the tracker without classification, for --log");
-  sub.add_option("--set", settings, "section.key=value: overrides both INIs");
-  sub.add_option("-t,--truth", truth_file, "Truth of the log");
-  sub.add_option("--counts", counts,
-                 "Numbers of particles, for --log (else those of Radecki et al.)")
-      ->delimiter(',')
-      ->check(CLI::Range(1, 100000));
-  sub.add_option("--seconds", seconds, "Of the log; 0 = all")->check(CLI::Range(0.0, 1e6));
-  addSector(sub, "Objects count up to this distance [m]",
-            "Whole angle ahead in which they count [deg]", range, fov_deg);
-}
-
 void StudyApp::declareLabels(CLI::App& sub) {
   sub.add_option("-i,--input", inputs, "Rawlogs with boxes of a detector, LOG.truth.csv beside")
       ->required();
@@ -153,8 +123,12 @@ void StudyApp::declareLabels(CLI::App& sub) {
       ->required();
   sub.add_option("--set", settings, "Change one value of the configuration: section.key=value");
   sub.add_option("--seconds", seconds, "Of every log; 0 = all")->check(CLI::Range(0.0, 1e6));
-  addSector(sub, "Truth counts up to this distance [m]",
-            "Whole angle ahead in which truth counts [deg]", labels_range, labels_fov_deg);
+  sub.add_option("--range", range, "Truth counts up to this distance [m]")
+      ->capture_default_str()
+      ->check(CLI::Range(0.1, 1e4));
+  sub.add_option("--fov-deg", fov_deg, "Whole angle ahead in which truth counts [deg]")
+      ->capture_default_str()
+      ->check(CLI::Range(0.1, 360.0));
 }
 
 void StudyApp::declareSnow(CLI::App& sub) {
@@ -179,34 +153,12 @@ void StudyApp::run() {
   fmt::print("{}\nReport: {}/report.md\n", markdownOf(out_report), output);
 }
 
-RecordedLog StudyApp::record(const std::string& config) {
-  config_file = config;
-  Config loaded = loadConfig();
-  say(1, fmt::format("{}: seen with {}", log, config));
-  return recordLog(log, loaded, seconds);
-}
-
-StudyReport StudyApp::particlesOfLog() {
-  if (config_file.empty()) throw Error(ExitCode::kUsage, "--log needs -c/--config");
-  LogParticlesParams params;
-  params.seed = seed;
-  if (!counts.empty()) params.counts = counts;
-  params.evaluation.selection.range = range;
-  params.evaluation.selection.fov = radians(fov_deg);
-  std::optional<GroundTruth> truth;
-  if (!truth_file.empty()) truth = readGroundTruth(truth_file);
-  const RecordedLog joint = record(config_file);
-  std::optional<RecordedLog> duc;
-  if (!duc_config.empty()) duc = record(duc_config);
-  return logParticlesStudy(params, joint, duc ? &*duc : nullptr, truth ? &*truth : nullptr);
-}
-
 StudyReport StudyApp::labelsOfLogs() {
   registerPerceptionClasses();
   LabelsParams params;
   params.seed = seed;
-  params.evaluation.selection.range = labels_range;
-  params.evaluation.selection.fov = radians(labels_fov_deg);
+  params.evaluation.selection.range = range;
+  params.evaluation.selection.fov = radians(fov_deg);
   std::vector<LabeledLog> logs;
   for (const std::string& file : inputs) {
     LabeledLog entry;

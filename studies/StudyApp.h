@@ -4,7 +4,6 @@
 
 #include "libperception/app/App.h"
 #include "libperception/evaluation/tables/StudyReport.h"
-#include "libperception/pipeline/input/RecordedLog.h"
 #include "studies/obstacles/ObstaclesStudy.h"
 #include "studies/obstacles/SafetyStudy.h"
 #include "studies/paper/PaperStudy.h"
@@ -21,43 +20,33 @@ class StudyApp : public App {
       : App("perception-study",
             "Experiments on the method: each writes a report with tables and plots.") {}
 
-  std::string study;                 ///< the name of the experiment
-  std::uint64_t seed = 1;            ///< --seed
-  int runs = 0;                      ///< --runs; 0 = default of the study
-  std::string log;                   ///< particles: a rawlog instead of simulated positions
-  std::string duc_config;            ///< particles: --duc, INI of DUC's tracker
-  std::string truth_file;            ///< particles: --truth of the log
-  std::vector<int> counts;           ///< particles: of the log; empty = those of [radecki2016]
-  double seconds = 0;                ///< particles: of the log; 0 = all
-  double range = 30, fov_deg = 360;  ///< particles: sector of counted objects [m, deg]
-  std::string scenario;              ///< ego: INI of the scenario
-  ResolutionOptions resolution;      ///< resolution: all of its options
-  PaperOptions paper;                ///< paper: all of its options
-  TrustOptions trust;                ///< trust: all of its options
-  WeatherOptions weather;            ///< weather: all of its options
-  SafetyOptions safety;              ///< safety: all of its options
-  ObstaclesOptions obstacles;        ///< obstacles: all of its options
-  double labels_range = 40, labels_fov_deg = 80;  ///< labels: where truth counts [m, deg]
-
-  double snow_mm_h = 2.5;  ///< snow-realism: of the control
+  std::string study;                ///< the name of the experiment
+  std::uint64_t seed = 1;           ///< --seed
+  int runs = 0;                     ///< --runs; 0 = default of the study
+  double seconds = 0;               ///< labels: of every log; 0 = all
+  double range = 40, fov_deg = 80;  ///< labels: where truth counts [m, deg]
+  std::string scenario;             ///< ego: INI of the scenario
+  ResolutionOptions resolution;     ///< resolution: all of its options
+  PaperOptions paper;               ///< paper: all of its options
+  TrustOptions trust;               ///< trust: all of its options
+  WeatherOptions weather;           ///< weather: all of its options
+  SafetyOptions safety;             ///< safety: all of its options
+  ObstaclesOptions obstacles;       ///< obstacles: all of its options
+  double snow_mm_h = 2.5;           ///< snow-realism: of the control
 
   StudyReport out_report;
 
   void declare(CLI::App& cli) override;
   void run() override;
 
-  /// The particles study on a log (--log).
-  StudyReport particlesOfLog();
   /// The labels study on the logs of -i.
   StudyReport labelsOfLogs();
   /// The snow study on the logs of -i, the first one recorded.
   StudyReport snowOfLogs();
 
  private:
-  void declareLog(CLI::App& sub);
   void declareLabels(CLI::App& sub);
   void declareSnow(CLI::App& sub);
-  RecordedLog record(const std::string& config);
 };
 
 }  // namespace perception

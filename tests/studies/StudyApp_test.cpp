@@ -2,7 +2,6 @@
 
 #include <gtest/gtest.h>
 #include <mrpt/obs/CObservationImage.h>
-#include <tbb/global_control.h>
 
 #include <algorithm>
 #include <filesystem>
@@ -15,7 +14,6 @@
 #include "libperception/pipeline/input/LogRecorder.h"
 #include "libperception/sensors/observations/Conversions.h"
 #include "libperception/sensors/rawlog/RawlogWriter.h"
-#include "studies/association/LogParticlesStudy.h"
 #include "tests/support/TemporaryFolder.h"
 
 namespace perception {
@@ -74,45 +72,6 @@ TEST(RecordedLog, EndsAfterTheSecondsAskedFor) {
   EXPECT_TRUE(log.simulated);
   const TrackedRun run = replay(log, {});
   EXPECT_NEAR(run.scenes.back().stamp - run.first_stamp, 2, 0.25);
-}
-
-TEST(LogParticlesStudy, DoesNotDependOnTheThreads) {
-  const RecordedLog log = demoLog(3);
-  LogParticlesParams params;
-  params.counts = {1, 8};
-  const StudyReport many = logParticlesStudy(params, log, nullptr, nullptr);
-  const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
-  const StudyReport single = logParticlesStudy(params, log, nullptr, nullptr);
-  EXPECT_EQ(markdownOf(many), markdownOf(single));
-}
-
-TEST(StudyApp, CountsTheParticlesThatALogNeeds) {
-  const test::TemporaryFolder folder;
-  const std::string out = folder.path() + "/particles";
-  StudyApp app;
-  const char* argv[] = {"perception-study",
-                        "particles",
-                        "-o",
-                        out.c_str(),
-                        "--log",
-                        PERCEPTION_SOURCE_DIR "/rawlogs/demo.rawlog",
-                        "-c",
-                        PERCEPTION_SOURCE_DIR "/ini/demo.ini",
-                        "--truth",
-                        PERCEPTION_SOURCE_DIR "/rawlogs/demo.truth.csv",
-                        "--seconds",
-                        "3"};
-  testing::internal::CaptureStdout();
-  const int code = runApp(app, 12, argv);
-  testing::internal::GetCapturedStdout();
-  ASSERT_EQ(code, 0);
-  for (const char* name : {"report.md", "counts.csv", "tracking.csv", "cdf.csv", "errors.png"})
-    EXPECT_TRUE(std::filesystem::exists(out + "/" + name)) << name;
-  ASSERT_EQ(app.out_report.tables.size(), 3u);
-  // The reference stands first and has no error against itself.
-  EXPECT_EQ(app.out_report.tables[0].rows[0][0], "joint, 50");
-  EXPECT_EQ(app.out_report.tables[0].rows[0][2], "0.00");
-  EXPECT_EQ(app.out_report.tables[0].rows[3][1], "3.80 / 1.80");
 }
 
 TEST(StudyApp, EgoReportsErrorsThroughAGapOfSatellites) {
