@@ -6,7 +6,6 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <optional>
-#include <thread>
 
 #include "libperception/app/Programs.h"
 #include "libperception/core/GroundTruth.h"
@@ -17,7 +16,6 @@
 #include "libperception/sensors/observations/registerClasses.h"
 #include "studies/association/ParticlesStudy.h"
 #include "studies/labels/LabelsStudy.h"
-#include "studies/motion/EgoStudy.h"
 #include "studies/paper/MonteCarloStudy.h"
 #include "studies/weather/SnowRealismStudy.h"
 
@@ -28,10 +26,7 @@ struct Study {
   const char* name;
   const char* description;
   StudyReport (*run)(StudyApp& app);
-  bool scenario = false;  ///< reads a scenario INI
-  bool labels = false;    ///< reads rawlogs with detections and truth
   void (*declare)(CLI::App& cli, StudyApp& app) = nullptr;  ///< options of its own
-  bool snow = false;                                        ///< reads rawlogs with labelled snow
 };
 
 const Study kStudies[] = {
@@ -48,47 +43,37 @@ const Study kStudies[] = {
        if (app.runs > 0) p.scenes = app.runs;
        return particlesStudy(p);
      }},
-    {"ego", "ego pose from GNSS, IMU and wheels (simulated)",
-     [](StudyApp& app) {
-       EgoStudyParams p;
-       Config config = Config::fromFile(app.scenario);
-       p.scenario = readScenario(config);
-       config.finish();
-       p.name = std::filesystem::path(app.scenario).stem().string();
-       p.seed = app.seed;
-       if (app.runs > 0) p.runs = app.runs;
-       return egoStudy(p);
-     },
-     true},
     {"labels", "a detector's labels dropped or flipped: joint tracker and one per class (rawlogs)",
-     [](StudyApp& app) { return app.labelsOfLogs(); }, false, true},
+     [](StudyApp& app) { return app.labelsOfLogs(); },
+     [](CLI::App& cli, StudyApp& app) { app.declareLabels(cli); }},
     {"resolution", "effect of a panorama's resolution: the camera tables of Radecki et al.",
      [](StudyApp& app) {
        app.resolution.seed = app.seed;
        return resolutionStudy(app.resolution);
      },
-     false, false, [](CLI::App& cli, StudyApp& app) { declareResolution(cli, app.resolution); }},
+     [](CLI::App& cli, StudyApp& app) { declareResolution(cli, app.resolution); }},
     {"paper", "every table of Radecki et al. beside its own numbers (simulated)",
      [](StudyApp& app) {
        app.paper.site.seed = app.seed;
        return paperStudy(app.paper);
      },
-     false, false, [](CLI::App& cli, StudyApp& app) { declarePaper(cli, app.paper); }},
+     [](CLI::App& cli, StudyApp& app) { declarePaper(cli, app.paper); }},
     {"trust", "trust of lidar returns against labels of points (a rawlog)",
-     [](StudyApp& app) { return trustStudy(app.trust); }, false, false,
+     [](StudyApp& app) { return trustStudy(app.trust); },
      [](CLI::App& cli, StudyApp& app) { declareTrust(cli, app.trust); }},
     {"safety", "false and missed stops, phantom tracks, against labels of points (rawlogs)",
-     [](StudyApp& app) { return safetyStudy(app.safety, app.seed); }, false, false,
+     [](StudyApp& app) { return safetyStudy(app.safety, app.seed); },
      [](CLI::App& cli, StudyApp& app) { declareSafety(cli, app.safety); }},
     {"obstacles",
      "stops for shapes that no detector was taught, against the stopping distance (simulated)",
-     [](StudyApp& app) { return obstaclesStudy(app.obstacles, app.seed); }, false, false,
+     [](StudyApp& app) { return obstaclesStudy(app.obstacles, app.seed); },
      [](CLI::App& cli, StudyApp& app) { declareObstacles(cli, app.obstacles); }},
     {"weather", "type and rates of the weather by lidar scans (rawlogs, simulated weather)",
-     [](StudyApp& app) { return weatherStudy(app.weather, app.seed); }, false, false,
+     [](StudyApp& app) { return weatherStudy(app.weather, app.seed); },
      [](CLI::App& cli, StudyApp& app) { declareWeather(cli, app.weather); }},
     {"snow-realism", "whether a forest tells simulated from recorded snow (labelled rawlogs)",
-     [](StudyApp& app) { return app.snowOfLogs(); }, false, false, nullptr, true},
+     [](StudyApp& app) { return app.snowOfLogs(); },
+     [](CLI::App& cli, StudyApp& app) { app.declareSnow(cli); }},
 };
 
 }  // namespace
@@ -103,15 +88,7 @@ void StudyApp::declare(CLI::App& cli) {
         ->check(CLI::Range(0, 1000000));
     sub->add_option("--threads", threads, "Number of threads; 0 = as many as the machine has")
         ->check(CLI::Range(0, 4096));
-    if (s.labels) declareLabels(*sub);
     if (s.declare) s.declare(*sub, *this);
-    if (s.snow) declareSnow(*sub);
-    if (s.scenario) {
-      sub->add_option("-c,--config", scenario,
-                      "Scenario INI with sensors of kind gnss, imu, wheels")
-          ->required()
-          ->check(CLI::ExistingFile);
-    }
     sub->callback([this, name = std::string(s.name)] { study = name; });
   }
 }

@@ -25,7 +25,6 @@ class StudyApp : public App {
   int runs = 0;                     ///< --runs; 0 = default of the study
   double seconds = 0;               ///< labels: of every log; 0 = all
   double range = 40, fov_deg = 80;  ///< labels: where truth counts [m, deg]
-  std::string scenario;             ///< ego: INI of the scenario
   ResolutionOptions resolution;     ///< resolution: all of its options
   PaperOptions paper;               ///< paper: all of its options
   TrustOptions trust;               ///< trust: all of its options
@@ -39,14 +38,12 @@ class StudyApp : public App {
   void declare(CLI::App& cli) override;
   void run() override;
 
+  void declareLabels(CLI::App& sub);
   /// The labels study on the logs of -i.
   StudyReport labelsOfLogs();
+  void declareSnow(CLI::App& sub);
   /// The snow study on the logs of -i, the first one recorded.
   StudyReport snowOfLogs();
-
- private:
-  void declareLabels(CLI::App& sub);
-  void declareSnow(CLI::App& sub);
 };
 
 }  // namespace perception

@@ -74,24 +74,6 @@ TEST(RecordedLog, EndsAfterTheSecondsAskedFor) {
   EXPECT_NEAR(run.scenes.back().stamp - run.first_stamp, 2, 0.25);
 }
 
-TEST(StudyApp, EgoReportsErrorsThroughAGapOfSatellites) {
-  const test::TemporaryFolder folder;
-  const std::string out = folder.path() + "/ego";
-  const std::string scenario = std::string(PERCEPTION_SOURCE_DIR) + "/ini/scenarios/gnss_gap.ini";
-  StudyApp app;
-  const char* argv[] = {"perception-study", "ego",    "-c", scenario.c_str(), "-o",
-                        out.c_str(),        "--runs", "3"};
-  ASSERT_EQ(runApp(app, 8, argv), 0);
-  for (const char* name : {"report.md", "phases.csv", "ego.png"})
-    EXPECT_TRUE(std::filesystem::exists(out + "/" + name)) << name;
-  ASSERT_EQ(app.out_report.tables.size(), 1U);
-  const auto& rows = app.out_report.tables[0].rows;
-  ASSERT_EQ(rows.size(), 3U);  // before, in and after the gap
-  EXPECT_EQ(rows[1][2], "gap of 10 s");
-  EXPECT_LT(std::stod(rows[1][4]), 2);  // [m] the worst of all
-  EXPECT_LT(std::stod(rows[1][7]), 2);  // [deg]
-}
-
 const StudyTable& tableOf(const StudyReport& report, const std::string& name) {
   const auto found = std::find_if(report.tables.begin(), report.tables.end(),
                                   [&](const StudyTable& t) { return t.name == name; });
