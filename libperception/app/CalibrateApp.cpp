@@ -7,7 +7,6 @@
 #include <iterator>
 #include <optional>
 #include <string>
-#include <vector>
 
 #include "libperception/app/App.h"
 #include "libperception/app/Programs.h"
@@ -33,7 +32,7 @@ class CalibrateApp : public App {
   int rounds = 0;                            ///< tempering: --runs; 0 = default of the task
   double seconds = 0;                        ///< of every log; 0 = all
   double truth_range = 30, truth_fov = 360;  ///< tempering: sector in which truth counts [m, deg]
-  LidarClassesOptions lidar_classes{{360}, false, false, "that of the logs", "not given"};
+  LidarClassesOptions lidar_classes{{360}, false, "that of the logs", "not given"};
   bool no_truth = false;  ///< gains: --no-truth
 
   void declare(CLI::App& cli) override;
@@ -109,8 +108,6 @@ void CalibrateApp::declare(CLI::App& cli) {
                       "Whole angle ahead in which the truth is complete [deg]: one for all logs, "
                       "or one per log")
           ->check(CLI::Range(1.0, 360.0));
-      sub->add_flag("--variants", lidar_classes.variants,
-                    "Learn from every scan also as other sensors would have made it");
       sub->add_flag("--model-only", lidar_classes.model_only,
                     "Learn the model without judging each log by the others: no tables");
       sub->add_option("--license", lidar_classes.license,

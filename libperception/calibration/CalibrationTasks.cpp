@@ -211,10 +211,9 @@ StudyReport calibrateLidarClasses(const CalibrationInput& input,
     const PointLabels labels(input.logs[i]);
     const GroundTruth truth = labels.any() ? GroundTruth{} : truthBeside(input.logs[i]);
     SampleRules rules;
-    rules.variants = options.variants;
     rules.fov = radians(options.complete_fov[std::min(i, options.complete_fov.size() - 1)]);
     ClusterSampler sampler(sensor->label, dynamic_cast<const LidarFrontEnd&>(*sensor->front_end),
-                           truth, labels, i, rules, input.seed, samples);
+                           truth, labels, i, rules, samples);
     const LogPass pass = passLog(input.logs[i], forFrontEnds(setup), input.seconds, sampler);
     logs.push_back({std::filesystem::path(input.logs[i]).stem().string(), pass.simulated});
     provenance.data.push_back(logs.back().name + (pass.simulated ? " (simulated)" : ""));

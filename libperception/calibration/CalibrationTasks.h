@@ -37,7 +37,6 @@ struct LidarClassesOptions {
   std::vector<double> complete_fov{
       360};                   ///< [deg] in which the truth is complete: all, or one a log
   bool model_only = false;    ///< no tables
-  bool variants = false;      ///< scans also as other sensors would have made them
   std::string license, date;  ///< for the model file
 };
 /// What clusters of lidar returns look like, learned.

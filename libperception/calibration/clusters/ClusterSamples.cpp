@@ -68,8 +68,6 @@ std::optional<ClusterKind> kindOfLabel(std::uint16_t label) {
   }
 }
 
-constexpr std::uint16_t kPostLabel = 80;  // SemanticKITTI's pole
-
 /// Obstacle returns, world [m].
 std::vector<Vector3> placesInWorld(const SensorFrame& frame, const LidarDetections& found) {
   std::vector<Vector3> places;
@@ -100,15 +98,13 @@ std::optional<ClusterKind> kindOfTruth(const std::string& type) {
 
 ClusterSampler::ClusterSampler(std::string sensor, const LidarFrontEnd& front_end,
                                const GroundTruth& truth, const PointLabels& labels, std::size_t log,
-                               const SampleRules& rules, std::uint64_t seed,
-                               ClusterSamples& samples)
+                               const SampleRules& rules, ClusterSamples& samples)
     : sensor_(std::move(sensor)),
       front_end_(front_end),
       truth_(truth),
       labels_(labels),
       log_(log),
       rules_(rules),
-      seed_(seed),
       samples_(samples) {}
 
 void ClusterSampler::onFrame(const SensorFrame& frame) {
@@ -120,36 +116,12 @@ void ClusterSampler::onFrame(const SensorFrame& frame) {
       std::find_if(truth_.instants.begin(), truth_.instants.end(),
                    [&](const GroundTruth::Instant& i) { return i.frame == frame.frame; });
   if (!labels && instant == truth_.instants.end()) return;
-  const auto* truth = instant == truth_.instants.end() ? nullptr : &*instant;
-  addScan(frame, ScanVariant::kRecorded, labels, truth);
-  for (std::size_t k = 1; rules_.variants && k < kScanVariants; ++k) {
-    const auto variant = static_cast<ScanVariant>(k);
-    const VariedScan varied = variedScan(frame, variant, seed_);
-    std::optional<std::vector<std::uint16_t>> changed;
-    if (labels) {
-      changed.emplace();
-      for (std::size_t i = 0; i < varied.source.size(); ++i)
-        changed->push_back(varied.moved[i] ? kPostLabel : (*labels)[varied.source[i]]);
-    }
-    const std::size_t first = samples_.clusters.size();
-    addScan(varied.frame, variant, changed, truth);
-    if (variant == ScanVariant::kHidden)
-      forgetScreens(front_end_.detect(varied.frame), varied.moved, first);
-  }
-}
-
-void ClusterSampler::addScan(const SensorFrame& frame, ScanVariant variant,
-                             const std::optional<std::vector<std::uint16_t>>& labels,
-                             const GroundTruth::Instant* instant) {
-  const auto& cloud = std::get<LidarCloud>(frame.data);
-  variant_ = variant;
   const LidarDetections found = front_end_.detect(frame);
   const std::size_t first = samples_.clusters.size();
   points_.clear();
-  for (DescribedCluster& cluster : describedClusters(found, cloud, DirectionCells(found.points))) {
+  for (DescribedCluster& cluster : describedClusters(found, *cloud, DirectionCells(found.points))) {
     Segment& segment = cluster.segment;
     ClusterSample sample;
-    sample.variant = variant_;
     sample.log = log_, sample.frame = frame.frame, sample.t = frame.stamp - *first_;
     sample.descriptor = cluster.descriptor;
     sample.whole = segment.whole < 0 ? -1 : static_cast<int>(first) + segment.whole;
@@ -167,20 +139,7 @@ void ClusterSampler::addScan(const SensorFrame& frame, ScanVariant variant,
   } else {
     addByBoxes(frame, found, *instant, first);
   }
-  if (variant == ScanVariant::kRecorded) nameThings(frame, first);
-}
-
-/// The posts and walls of a variant hide what is behind them; they do not teach what things look
-/// like.
-void ClusterSampler::forgetScreens(const LidarDetections& found, const std::vector<bool>& moved,
-                                   std::size_t first) {
-  for (std::size_t c = 0; c < points_.size(); ++c) {
-    const auto on_screens = std::count_if(
-        points_[c].begin(), points_[c].end(),
-        [&](std::uint32_t i) { return moved[found.points.source[found.obstacles[i]]]; });
-    if (static_cast<double>(on_screens) > rules_.hardly * static_cast<double>(points_[c].size()))
-      samples_.clusters[first + c].kind.reset();
-  }
+  nameThings(frame, first);
 }
 
 /// Things within half a meter of one of the frame before are that one.
@@ -221,7 +180,6 @@ void ClusterSampler::addByBoxes(const SensorFrame& frame, const LidarDetections&
     ObjectView view;
     const auto kind = kindOfTruth(o.type);
     view.log = log_, view.frame = frame.frame, view.object = o.id;
-    view.variant = variant_;
     view.range = center.head<2>().norm(), view.returns = on_it;
     for (std::size_t c = 0; c < clusters; ++c) {
       const auto inside = static_cast<double>(

@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "libperception/calibration/clusters/PointLabels.h"
-#include "libperception/calibration/clusters/ScanVariants.h"
 #include "libperception/core/GroundTruth.h"
 #include "libperception/lidar/LidarFrontEnd.h"
 #include "libperception/lidar/classification/ClusterKind.h"
@@ -29,7 +28,6 @@ struct ClusterSample {
   EvidenceView view;                ///< from where it was seen
   int whole = -1;                   ///< index of the sample that it is a part of
   Descriptor descriptor{};
-  ScanVariant variant = ScanVariant::kRecorded;  ///< of the scan that it is from
 };
 
 /// A true road user at one scan and the cluster, part or whole, that shows it best.
@@ -37,7 +35,6 @@ struct ObjectView {
   std::size_t log = 0;
   std::int64_t frame = -1, object = -1;
   ClusterKind kind = ClusterKind::kVehicle;
-  ScanVariant variant = ScanVariant::kRecorded;
   double range = 0;         ///< [m]
   std::size_t returns = 0;  ///< obstacle returns on it
   /// Index of the sample with the greatest overlap of returns (intersection over union); -1: none.
@@ -62,27 +59,21 @@ struct SampleRules {
   double hardly = 0.1;      ///< of a thing's returns on road users at most
   double grown = 0.4;       ///< of an object's returns in a cluster of several: it is mixed
   double fragment = 0.2;    ///< of an object's returns at most in a fragment of it
-  bool variants = false;    ///< every scan also as other sensors would have seen it
 };
 
-/// Collects the samples of a log as it passes the pipeline, from frames of lidars with truth: of
-/// every scan as it is and of its variants (method.md 8.10).
+/// Collects the samples of a log as it passes the pipeline, from frames of lidars with truth
+/// (method.md 8.10).
 class ClusterSampler final : public PipelineObserver {
  public:
   /// `front_end` names the obstacles of the frames of `sensor`. Borrows all but the rules.
   ClusterSampler(std::string sensor, const LidarFrontEnd& front_end, const GroundTruth& truth,
                  const PointLabels& labels, std::size_t log, const SampleRules& rules,
-                 std::uint64_t seed, ClusterSamples& samples);
+                 ClusterSamples& samples);
   void onFrame(const SensorFrame& frame) override;
 
  private:
-  void addScan(const SensorFrame& frame, ScanVariant variant,
-               const std::optional<std::vector<std::uint16_t>>& labels,
-               const GroundTruth::Instant* instant);
   void addByBoxes(const SensorFrame& frame, const LidarDetections& found,
                   const GroundTruth::Instant& instant, std::size_t first);
-  void forgetScreens(const LidarDetections& found, const std::vector<bool>& moved,
-                     std::size_t first);
   void addByLabels(const LidarDetections& found, const std::vector<std::uint16_t>& labels,
                    std::size_t first);
 
@@ -94,9 +85,7 @@ class ClusterSampler final : public PipelineObserver {
   const PointLabels& labels_;
   std::size_t log_;
   SampleRules rules_;
-  std::uint64_t seed_;
   ClusterSamples& samples_;
-  ScanVariant variant_ = ScanVariant::kRecorded;  ///< of the scan at hand
   std::optional<Stamp> first_;
   std::vector<std::vector<std::uint32_t>> points_;        ///< of the frame's clusters
   std::vector<std::pair<Vector2, std::int64_t>> things_;  ///< of the last frame: world [m], id

@@ -97,11 +97,10 @@ void addReliability(const std::string& name, const Counts& counts, StudyTable& r
 /// True objects of a log and how many of them have a cluster of their kind; `shares`: of all
 /// samples.
 std::vector<std::string> boxRow(const std::string& name, const ClusterSamples& samples,
-                                std::size_t log, ScanVariant variant,
-                                const std::vector<Shares>& shares) {
+                                std::size_t log, const std::vector<Shares>& shares) {
   std::array<double, 3> objects{}, right{};
   for (const ObjectView& o : samples.objects) {
-    if (o.log != log || o.variant != variant || o.returns < 20 || o.range > 40) continue;
+    if (o.log != log || o.returns < 20 || o.range > 40) continue;
     const auto k = static_cast<std::size_t>(o.kind);
     objects[k] += 1;
     right[k] += o.sample >= 0 && likeliest(shares[static_cast<std::size_t>(o.sample)]) == k;
@@ -145,8 +144,7 @@ void requireThreeLogs(const ClusterSamples& samples, std::size_t logs) {
                     known.size(), logs));
 }
 
-/// Judges each log, and each of its variants, by what the others teach: the report's tables and
-/// plot.
+/// Judges each log by what the others teach: the report's tables and plot.
 void judgeLeftOut(const ClusterSamples& samples, const std::vector<TrainingLog>& logs,
                   const Provenance& provenance, ClusterTrainer& trainer, StudyReport& report) {
   StudyTable left_out{"left_out",
@@ -171,21 +169,17 @@ void judgeLeftOut(const ClusterSamples& samples, const std::vector<TrainingLog>&
     const ClusterClassifier blind = trainer.classifier(log, provenance);
     for (const std::size_t i : trainer.of(log))
       all[i] = sharesOf(blind, samples.clusters[i].descriptor);
-    for (std::size_t v = 0; v < kScanVariants; ++v) {
-      const auto variant = static_cast<ScanVariant>(v);
-      Counts counts;
-      for (const std::size_t i : trainer.of(log)) {
-        const ClusterSample& s = samples.clusters[i];
-        if (s.variant == variant && s.kind && *s.kind != ClusterKind::kMixed && s.whole < 0)
-          counts.add(all[i], static_cast<std::size_t>(*s.kind));
-      }
-      if (counts.n == 0) continue;
-      const std::string name =
-          v == 0 ? logs[log].name : fmt::format("{}, {}", logs[log].name, kScanVariantNames[v]);
-      left_out.rows.push_back(leftOutRow(name, counts));
-      if (v == 0) addReliability(name, counts, reliability);
-      boxes.rows.push_back(boxRow(name, samples, log, variant, all));
+    Counts counts;
+    for (const std::size_t i : trainer.of(log)) {
+      const ClusterSample& s = samples.clusters[i];
+      if (s.kind && *s.kind != ClusterKind::kMixed && s.whole < 0)
+        counts.add(all[i], static_cast<std::size_t>(*s.kind));
     }
+    if (counts.n == 0) continue;
+    const std::string& name = logs[log].name;
+    left_out.rows.push_back(leftOutRow(name, counts));
+    addReliability(name, counts, reliability);
+    boxes.rows.push_back(boxRow(name, samples, log, all));
   }
   report.tables = {std::move(left_out), std::move(boxes)};
   report.plots.push_back(reliabilityPlot(reliability));

@@ -12,12 +12,10 @@
 namespace perception {
 namespace {
 
-constexpr double kMostOfLog = 400;       // samples of a kind by which a log counts
-constexpr double kSimulatedShare = 0.3;  // of a simulated log beside recorded ones
-constexpr double kFewSamples = 50;       // of a kind: its map is then half way to none
-constexpr std::size_t kMostSamples =
-    4000;                             // of a kind and log, evenly thinned; of variants as many
-constexpr double kVariedShare = 0.5;  // of a log's say is that of its variants
+constexpr double kMostOfLog = 400;          // samples of a kind by which a log counts
+constexpr double kSimulatedShare = 0.3;     // of a simulated log beside recorded ones
+constexpr double kFewSamples = 50;          // of a kind: its map is then half way to none
+constexpr std::size_t kMostSamples = 4000;  // of a kind and log, evenly thinned
 
 ClusterTrainer::Probabilities softmax(const BoostedTrees& trees, const Descriptor& d) {
   double scores[kClusterKinds];
@@ -58,23 +56,16 @@ BoostedTrees ClusterTrainer::train(std::size_t without, std::size_t without_too)
   };
   for (std::size_t log = 0; log < logs_.size(); ++log) {
     if (log == without || log == without_too) continue;
-    std::array<std::vector<std::size_t>, kClusterKinds> recorded, varied;
+    std::array<std::vector<std::size_t>, kClusterKinds> of_kind;
     for (const std::size_t i : of_log_[log]) {
       const ClusterSample& sample = samples_.clusters[i];
-      if (!sample.kind) continue;
-      auto& of_kind = sample.variant == ScanVariant::kRecorded ? recorded : varied;
-      of_kind[static_cast<std::size_t>(*sample.kind)].push_back(i);
+      if (sample.kind) of_kind[static_cast<std::size_t>(*sample.kind)].push_back(i);
     }
     for (std::size_t k = 0; k < kClusterKinds; ++k) {
-      if (recorded[k].empty()) continue;
-      const double say = std::min(kMostOfLog, static_cast<double>(recorded[k].size())) *
+      if (of_kind[k].empty()) continue;
+      const double say = std::min(kMostOfLog, static_cast<double>(of_kind[k].size())) *
                          (logs_[log].simulated && recorded_ ? kSimulatedShare : 1);
-      // Spray and snow hang in space as no surface does, on any sensor: posts in front and noise
-      // would only blur that.
-      const bool phantom = k == static_cast<std::size_t>(ClusterKind::kPhantom);
-      const double share = varied[k].empty() || phantom ? 0 : kVariedShare;
-      addPart(recorded[k], k, (1 - share) * say);
-      if (share > 0) addPart(varied[k], k, share * say);
+      addPart(of_kind[k], k, say);
       sum[k] += say;
     }
   }
@@ -115,18 +106,12 @@ ClusterClassifier ClusterTrainer::classifier(std::size_t without, Provenance pro
   for (std::size_t log = 0; log < logs_.size(); ++log) {
     if (log == without || (recorded_ && logs_[log].simulated)) continue;
     const auto& raw = leftOut(log, without);
-    const auto recorded_samples = std::count_if(
-        of_log_[log].begin(), of_log_[log].end(),
-        [&](std::size_t i) { return samples_.clusters[i].variant == ScanVariant::kRecorded; });
-    const double of_log = 1 / std::sqrt(std::max(1.0, static_cast<double>(recorded_samples)));
+    const double weight = 1 / std::sqrt(std::max(1.0, static_cast<double>(of_log_[log].size())));
     for (std::size_t i = 0; i < raw.size(); ++i) {
-      const ClusterSample& sample = samples_.clusters[of_log_[log][i]];
-      const auto kind = sample.kind;
+      const auto kind = samples_.clusters[of_log_[log][i]].kind;
       if (!kind) continue;
-      const bool recorded = sample.variant == ScanVariant::kRecorded;
-      const double weight = recorded ? of_log : of_log / (kScanVariants - 1);
       weights.push_back(weight);
-      if (recorded) prior[static_cast<std::size_t>(*kind)] += weight, all += weight;
+      prior[static_cast<std::size_t>(*kind)] += weight, all += weight;
       for (std::size_t k = 0; k < kClusterKinds; ++k) {
         values[k].push_back(raw[i][k]);
         is_kind[k].push_back(k == static_cast<std::size_t>(*kind));
@@ -160,9 +145,7 @@ EvidenceMemory ClusterTrainer::memoryOf(const ClusterClassifier& shape, std::siz
     const auto& raw = leftOut(log, without);
     for (std::size_t i = 0; i < raw.size(); ++i) {
       const ClusterSample& s = samples_.clusters[of_log_[log][i]];
-      if (!s.kind || s.object == ClusterSample::kNoObject || s.whole >= 0 ||
-          s.variant != ScanVariant::kRecorded)
-        continue;
+      if (!s.kind || s.object == ClusterSample::kNoObject || s.whole >= 0) continue;
       const auto calibrated = [&](std::size_t k) {
         return 0.9 * shape.calibrations()[k](raw[i][k]) + 0.1 * raw[i][k] + 1e-4;
       };

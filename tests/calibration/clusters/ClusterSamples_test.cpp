@@ -57,7 +57,7 @@ struct Log {
     frames.push_back(std::move(frame));
   }
   void sample() {
-    ClusterSampler sampler("LIDAR_TOP", front_end, truth, labels, 3, rules, 1, samples);
+    ClusterSampler sampler("LIDAR_TOP", front_end, truth, labels, 3, rules, samples);
     for (const SensorFrame& frame : frames) sampler.onFrame(frame);
   }
   /// The whole cluster nearest to a place of the ego frame.
@@ -76,22 +76,6 @@ const std::vector<TruthObject>& streetTruth() {
   static const std::vector<TruthObject> objects = {truthBox(5, "Van", kVan),
                                                    truthBox(9, "Pedestrian", kPersonBox)};
   return objects;
-}
-
-TEST(ClusterSamples, OfVariantsHaveTheKindOfWhatTheyShow) {
-  Log log;
-  log.rules.variants = true;
-  log.add(street(), Pose3::Identity(),
-          {truthBox(1, "Van", kVan), truthBox(2, "Pedestrian", kPersonBox)});
-  log.sample();
-  for (const ScanVariant variant : {ScanVariant::kRecorded, ScanVariant::kHalfBeams,
-                                    ScanVariant::kHalfColumns, ScanVariant::kPlain}) {
-    const auto vehicles = std::count_if(
-        log.samples.clusters.begin(), log.samples.clusters.end(), [&](const ClusterSample& s) {
-          return s.variant == variant && s.kind == ClusterKind::kVehicle && s.object == 1;
-        });
-    EXPECT_GE(vehicles, 1) << kScanVariantNames[static_cast<std::size_t>(variant)];
-  }
 }
 
 TEST(ClusterSamples, TypesOfTheTruthHaveKinds) {
