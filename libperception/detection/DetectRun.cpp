@@ -214,7 +214,6 @@ void DetectRun::readLog(const std::string& log) {
       if (!shown || !boxes || !(shown->stamp == boxes->stamp)) continue;
       if (auto result = detectIn(*shown, seen - 1)) {
         result->found = std::get<ObjectDetections>(boxes->data);
-        detector_.addHeadings(result->image, result->found.camera, result->found.objects);
         finish(*result);
         draw(*out.folder, *result);
       }

@@ -12,7 +12,6 @@
 #include "libperception/detection/DetectImages.h"
 #include "libperception/detection/DetectLabels.h"
 #include "libperception/detectors/DetectionQuality.h"
-#include "libperception/detectors/HeadingHead.h"
 #include "libperception/detectors/ImageDetector.h"
 
 namespace perception {
@@ -86,10 +85,5 @@ class DetectRun {
   std::string rows_ = "image,label,score,probability,x1,y1,x2,y2,heading_deg\n";
   bool scores_are_log_odds_ = false;
 };
-
-/// Learns the headings of boxes of this label from images, and from their mirror images. The second
-/// is the number of images. Throws DataError.
-std::pair<HeadingHead, int> headingsLearned(const std::vector<std::string>& images,
-                                            const ImageLabels& truth, const std::string& label);
 
 }  // namespace perception

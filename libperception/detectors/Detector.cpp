@@ -107,8 +107,6 @@ DetectorSetup DetectorSetup::read(Config& config) {
     setup.models.emplace_back(section.substr(std::string(kModelPrefix).size()),
                               config.read<DetectorModelParams>(section));
   }
-  for (const std::string& section : config.sectionsWithPrefix("heading."))
-    setup.headings.push_back(config.read<HeadingHeadParams>(section));
   setup.dpm = config.read<DpmParams>("dpm");
   setup.onnx = config.read<OnnxParams>("onnx");
   setup.hog = config.read<HogParams>("hog");

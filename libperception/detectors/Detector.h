@@ -8,7 +8,6 @@
 #include "libperception/config/Config.h"
 #include "libperception/detectors/DpmOptions.h"
 #include "libperception/detectors/GroundGate.h"
-#include "libperception/detectors/HeadingHead.h"
 #include "libperception/measurement/frames/SensorFrame.h"
 
 namespace perception {
@@ -65,12 +64,11 @@ struct DetectorSetup {
   bool ground_gate = true;  ///< search only where the ground allows objects (method.md 8.8)
   double ground_slope_sigma = radians(1.2);  ///< [rad] of road and pitch (method.md 8.8)
   std::vector<std::pair<std::string, DetectorModelParams>> models;  ///< by name, as in the INI
-  std::vector<HeadingHeadParams> headings;                          ///< [heading.NAME]
   DpmParams dpm;
   OnnxParams onnx;
   HogParams hog;
 
-  /// Reads [detector], [model.*], [heading.*] and the sections of the back ends.
+  /// Reads [detector], [model.*] and the sections of the back ends.
   static DetectorSetup read(Config& config);
   void visit(ParamVisitor& v);
   std::string backendName() const;

@@ -20,17 +20,7 @@ Pose3 turnedRight(const Pose3& T_ego_camera, double angle) {
 }  // namespace
 
 ImageDetector::ImageDetector(DetectorSetup setup)
-    : setup_(std::move(setup)), detector_(makeDetector(setup_)) {
-  for (const HeadingHeadParams& params : setup_.headings)
-    heads_.push_back(HeadingHead::read(params.file));
-}
-
-void ImageDetector::addHeadings(const Raster& image, const CameraModel& camera,
-                                std::vector<ObjectDetection>& objects) const {
-  const bool closed = camera.projection == CameraModel::Projection::kEquirectangular;
-  for (std::size_t i = 0; i < heads_.size(); ++i)
-    heads_[i].apply(image, closed, setup_.headings[i].replace, objects);
-}
+    : setup_(std::move(setup)), detector_(makeDetector(setup_)) {}
 
 std::optional<GroundGate> ImageDetector::gateOf(const CameraModel& camera,
                                                 const std::optional<Pose3>& T_ego_camera,
@@ -55,7 +45,6 @@ ObjectDetections ImageDetector::detect(const Raster& image, const CameraModel& c
   if (!detector_ || image.width <= 0 || image.height <= 0) return out;
   if (camera.projection != CameraModel::Projection::kEquirectangular) {
     out.objects = detector_->detect(image, {gateOf(camera, T_ego_camera, ground), false});
-    addHeadings(image, out.camera, out.objects);
     return out;
   }
   const PanoramaFit fit(out.camera);
@@ -76,7 +65,6 @@ ObjectDetections ImageDetector::detect(const Raster& image, const CameraModel& c
   }
   out.objects = whole.merge(tiles).objects;
   if (!fit.isWhole()) fit.toPicture(out.objects);
-  addHeadings(image, out.camera, out.objects);
   return out;
 }
 

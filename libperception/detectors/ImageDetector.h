@@ -19,9 +19,6 @@ class ImageDetector {
   ObjectDetections detect(const Raster& image, const CameraModel& camera,
                           const std::optional<Pose3>& T_ego_camera,
                           const GroundPlane& ground = {}) const;
-  /// Sets the headings of boxes from any source by the heading heads of the setup.
-  void addHeadings(const Raster& image, const CameraModel& camera,
-                   std::vector<ObjectDetection>& objects) const;
   const DetectorSetup& setup() const { return setup_; }
   bool hasBackend() const { return detector_ != nullptr; }
 
@@ -33,7 +30,6 @@ class ImageDetector {
 
   DetectorSetup setup_;
   std::unique_ptr<Detector> detector_;
-  std::vector<HeadingHead> heads_;  ///< as setup_.headings
   mutable std::mutex mutex_;
   mutable std::map<int, Panorama> panoramas_;  ///< by width
 };

@@ -3,9 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "libperception/core/Error.h"
 #include "libperception/measurement/PoseNoise.h"
-#include "libperception/vision/HeadingErrors.h"
 
 namespace perception {
 namespace {
@@ -106,9 +104,6 @@ void DetectorParams::visit(ParamVisitor& v) {
          "... after a reversed one of the same object");
   v.expert();
   v.real("score_limit", score_limit, {0, 50}, "", "bound of the score's log-odds");
-  v.path("heading_model", heading_model,
-         "file of the heading head in use: its measured errors replace heading_sigma_deg "
-         "and heading_flip");
 }
 
 VisionFrontEnd::VisionFrontEnd(DetectorParams detector, BoxGeometryParams geometry,
@@ -272,15 +267,6 @@ std::unique_ptr<FrontEnd> makeVisionFrontEnd(Config& config, const std::string& 
   const std::string section = "sensor." + sensor_label;
   auto detector = config.read<DetectorParams>(section + ".detector");
   auto geometry = config.read<BoxGeometryParams>(section + ".geometry");
-  if (!detector.heading_model.empty()) {
-    try {
-      const HeadingErrors errors = readHeadingErrors(detector.heading_model);
-      detector.heading_sigma = errors.axis_sigma;
-      detector.heading_flip = std::min(0.5, errors.flip_share);
-    } catch (const DataError& e) {
-      config.fault(section + ".detector", "heading_model", e.what());
-    }
-  }
   const DetectionModel detection_model =
       DetectionModel::read(config, section, classes, detector.labels, cameraDefaults());
   // The measured range of an object within range_max may exceed it.

@@ -45,7 +45,6 @@ struct DetectorParams {
                                         ///< method.md 7. KITTI's bank: 6.7 deg
   double heading_flip = 0.2;            ///< share of reversed headings, assumed; 0.5: axis only
   double heading_flip_persistence = 0;  ///< P(reversed | the previous one was)
-  std::string heading_model;  ///< file of a HeadingHead, whose measured errors replace both
 
   void visit(ParamVisitor& v);
 };

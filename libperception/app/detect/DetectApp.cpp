@@ -10,7 +10,6 @@
 #include <utility>
 
 #include "libperception/app/Programs.h"
-#include "libperception/core/math/Angle.h"
 #include "libperception/detection/DetectResults.h"
 #include "libperception/scene/files/OutputFile.h"
 
@@ -29,10 +28,6 @@ void DetectApp::declare(CLI::App& cli) {
                  "Fit P(object | score) to the labels and write this INI");
   cli.add_option("--export", kitti_export,
                  "kitti:DIR: also write one file per image in KITTI's layout");
-  cli.add_option("--train-heading", train_heading,
-                 "Learn the headings of boxes from images and --labels, and write this file");
-  cli.add_option("--heading-label", heading_label, "Class of the boxes to learn from")
-      ->capture_default_str();
   cli.add_flag("--pictures", options.pictures, "Draw the boxes: pictures/NAME.png");
   cli.add_option("--every", options.every, "Use one in so many of a log's images")
       ->check(CLI::Range(1, 100000));
@@ -52,7 +47,6 @@ void DetectApp::declare(CLI::App& cli) {
 }
 
 void DetectApp::run() {
-  if (!train_heading.empty()) return trainHeading();
   if (config_file.empty()) throw Error(ExitCode::kUsage, "-c INI is required: ini/detectors");
   Config config = loadConfig();
   DetectorSetup setup = DetectorSetup::read(config);
@@ -89,20 +83,6 @@ void DetectApp::run() {
   fmt::print("{} images, {} boxes; {:.1f} ms an image\n{}", out.images, out.objects,
              out.images > 0 ? 1e3 * out.seconds / static_cast<double>(out.images) : 0.0,
              qualityText(out.quality));
-}
-
-void DetectApp::trainHeading() const {
-  if (options.labels.empty() || inputs.empty())
-    throw Error(ExitCode::kUsage, "--train-heading needs -i IMAGES and --labels");
-  const ImageLabels truth(options.labels, options.rules);
-  const auto [head, images] = headingsLearned(imageFiles(inputs), truth, heading_label);
-  writeFile(train_heading, head.text());
-  fmt::print(
-      "{}: {} pictures of {} images, mirrored ones included\n"
-      "axis within {:.1f} deg (rms), front and back confused in {:.1f} % (cross-validated)\n"
-      "[sensor.LABEL.detector] heading_model = {} takes both\n",
-      train_heading, head.examples(), images, degrees(head.axisSigma()), 100 * head.flipShare(),
-      train_heading);
 }
 
 std::unique_ptr<App> detectApp() { return std::make_unique<DetectApp>(); }
