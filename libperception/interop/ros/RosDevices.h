@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <string>
 #include <string_view>
+#include <tuple>
 #include <vector>
 
 #include "libperception/interop/ros/RosMessages.h"
@@ -18,11 +19,8 @@ struct LivoxPoint {
   std::array<float, 3> place{};    ///< [m]
   std::uint8_t reflectivity = 0;   ///< 0 to 255
   std::uint8_t tag = 0, line = 0;  ///< the laser's number
+  auto members() { return std::tie(offset_time, place, reflectivity, tag, line); }
 };
-template <class Wire>
-void fields(Wire& w, LivoxPoint& m) {
-  w(m.offset_time), w(m.place), w(m.reflectivity), w(m.tag), w(m.line);
-}
 
 struct LivoxScan {
   Header header;
@@ -31,53 +29,38 @@ struct LivoxScan {
   std::uint8_t lidar_id = 0;
   std::array<std::uint8_t, 3> reserved{};
   std::vector<LivoxPoint> points;
+  auto members() { return std::tie(header, timebase, point_num, lidar_id, reserved, points); }
 };
-template <class Wire>
-void fields(Wire& w, LivoxScan& m) {
-  w(m.header), w(m.timebase), w(m.point_num), w(m.lidar_id), w(m.reserved), w(m.points);
-}
 
 /// velodyne_msgs/VelodynePacket.
 struct VelodynePacket {
   Stamp stamp;  ///< of reception
   FixedBytes<1206> data;
+  auto members() { return std::tie(stamp, data); }
 };
-template <class Wire>
-void fields(Wire& w, VelodynePacket& m) {
-  w(m.stamp), w(m.data);
-}
 
 /// pandar_msgs/PandarPacket, hesai_ros_driver/UdpPacket: `size` bytes of data are used.
 struct PandarPacket {
   Stamp stamp;
   FixedBytes<1500> data;
   std::uint32_t size = 0;
+  auto members() { return std::tie(stamp, data, size); }
 };
-template <class Wire>
-void fields(Wire& w, PandarPacket& m) {
-  w(m.stamp), w(m.data), w(m.size);
-}
 
 /// rslidar_msgs/rslidarPacket, and rslidar_msg/RslidarPacket of drivers before 1.3.
 struct RslidarPacket {
   Stamp stamp;
   FixedBytes<1248> data;
+  auto members() { return std::tie(stamp, data); }
 };
-template <class Wire>
-void fields(Wire& w, RslidarPacket& m) {
-  w(m.stamp), w(m.data);
-}
 
 /// rslidar_msg/RslidarPacket of drivers from 1.3 on.
 struct RslidarMessage {
   Header header;
   std::uint8_t is_difop = 0, is_frame_begin = 0;
   std::string_view data;
+  auto members() { return std::tie(header, is_difop, is_frame_begin, data); }
 };
-template <class Wire>
-void fields(Wire& w, RslidarMessage& m) {
-  w(m.header), w(m.is_difop), w(m.is_frame_begin), w(m.data);
-}
 
 /// velodyne_msgs/VelodyneScan, pandar_msgs/PandarScan, hesai_ros_driver/UdpFrame,
 /// rslidar_msgs/rslidarScan.
@@ -85,11 +68,8 @@ template <class Packet>
 struct PacketScan {
   Header header;
   std::vector<Packet> packets;
+  auto members() { return std::tie(header, packets); }
 };
-template <class Wire, class Packet>
-void fields(Wire& w, PacketScan<Packet>& m) {
-  w(m.header), w(m.packets);
-}
 using VelodyneScan = PacketScan<VelodynePacket>;
 using PandarScan = PacketScan<PandarPacket>;
 using RslidarScan = PacketScan<RslidarPacket>;
@@ -97,11 +77,8 @@ using RslidarScan = PacketScan<RslidarPacket>;
 /// PacketMsg of Ouster's drivers.
 struct OusterPacket {
   std::string_view bytes;
+  auto members() { return std::tie(bytes); }
 };
-template <class Wire>
-void fields(Wire& w, OusterPacket& m) {
-  w(m.bytes);
-}
 
 /// can_msgs/Frame.
 struct CanFrame {
@@ -110,20 +87,14 @@ struct CanFrame {
   std::uint8_t is_rtr = 0, is_extended = 0, is_error = 0;
   std::uint8_t length = 0;  ///< [bytes] of the data that are used
   FixedBytes<8> data;
+  auto members() { return std::tie(header, id, is_rtr, is_extended, is_error, length, data); }
 };
-template <class Wire>
-void fields(Wire& w, CanFrame& m) {
-  w(m.header), w(m.id), w(m.is_rtr), w(m.is_extended), w(m.is_error), w(m.length), w(m.data);
-}
 
 /// std_msgs/String.
 struct Text {
   std::string text;
+  auto members() { return std::tie(text); }
 };
-template <class Wire>
-void fields(Wire& w, Text& m) {
-  w(m.text);
-}
 
 /// radar_msgs/RadarTrack: an object of a radar's own tracker.
 struct RadarTrack {
@@ -131,21 +102,16 @@ struct RadarTrack {
   std::array<double, 3> position{}, velocity{}, acceleration{}, size{};  ///< [m], [s]
   std::uint16_t classification = 0;
   std::array<float, 24> covariances{};  ///< six each: of position, velocity, acceleration, size
+  auto members() {
+    return std::tie(id, position, velocity, acceleration, size, classification, covariances);
+  }
 };
-template <class Wire>
-void fields(Wire& w, RadarTrack& m) {
-  w(m.id), w(m.position), w(m.velocity), w(m.acceleration), w(m.size), w(m.classification);
-  w(m.covariances);
-}
 
 struct RadarTracks {
   Header header;
   std::vector<RadarTrack> tracks;
+  auto members() { return std::tie(header, tracks); }
 };
-template <class Wire>
-void fields(Wire& w, RadarTracks& m) {
-  w(m.header), w(m.tracks);
-}
 
 /// sensor_msgs/LaserScan: ranges of one layer, counter-clockwise where the increment is positive.
 struct LaserScan {
@@ -154,32 +120,25 @@ struct LaserScan {
   float time_increment = 0, scan_time = 0;                  ///< [s] between two ranges, two scans
   float range_min = 0, range_max = 0;                       ///< [m]
   std::vector<float> ranges, intensities;                   ///< [m]; a device's own units, or none
+  auto members() {
+    return std::tie(header, angle_min, angle_max, angle_increment, time_increment, scan_time,
+                    range_min, range_max, ranges, intensities);
+  }
 };
-template <class Wire>
-void fields(Wire& w, LaserScan& m) {
-  w(m.header), w(m.angle_min), w(m.angle_max), w(m.angle_increment), w(m.time_increment);
-  w(m.scan_time), w(m.range_min), w(m.range_max), w(m.ranges), w(m.intensities);
-}
 
 /// geometry_msgs/PoseWithCovarianceStamped.
 struct PoseWithCovarianceStamped {
   Header header;
   Pose pose;
   std::array<double, 36> covariance{};
+  auto members() { return std::tie(header, pose, covariance); }
 };
-template <class Wire>
-void fields(Wire& w, PoseWithCovarianceStamped& m) {
-  w(m.header), w(m.pose), w(m.covariance);
-}
 
 /// nav_msgs/Path.
 struct Path {
   Header header;
   std::vector<PoseStamped> poses;
+  auto members() { return std::tie(header, poses); }
 };
-template <class Wire>
-void fields(Wire& w, Path& m) {
-  w(m.header), w(m.poses);
-}
 
 }  // namespace perception::ros

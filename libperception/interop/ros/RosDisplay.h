@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <string>
 #include <string_view>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -39,11 +40,8 @@ void fields(Wire& w, Marker& m) {
 
 struct MarkerArray {
   std::vector<Marker> markers;
+  auto members() { return std::tie(markers); }
 };
-template <class Wire>
-void fields(Wire& w, MarkerArray& m) {
-  w(m.markers);
-}
 
 struct OccupancyGrid {
   Header header;
@@ -51,19 +49,13 @@ struct OccupancyGrid {
   std::uint32_t width = 0, height = 0;
   Pose origin;            ///< of the corner of the first cell
   std::string_view data;  ///< rows along x, an int8 a cell: 0 free to 100 occupied, -1 not known
+  auto members() { return std::tie(header, header.stamp, resolution, width, height, origin, data); }
 };
-template <class Wire>
-void fields(Wire& w, OccupancyGrid& m) {
-  w(m.header), w(m.header.stamp), w(m.resolution), w(m.width), w(m.height), w(m.origin), w(m.data);
-}
 
 struct KeyValue {
   std::string key, value;
+  auto members() { return std::tie(key, value); }
 };
-template <class Wire>
-void fields(Wire& w, KeyValue& m) {
-  w(m.key), w(m.value);
-}
 
 /// diagnostic_msgs/DiagnosticStatus.
 struct DiagnosticStatus {
@@ -71,30 +63,21 @@ struct DiagnosticStatus {
   std::uint8_t level = kOk;
   std::string name, message, hardware_id;
   std::vector<KeyValue> values;
+  auto members() { return std::tie(level, name, message, hardware_id, values); }
 };
-template <class Wire>
-void fields(Wire& w, DiagnosticStatus& m) {
-  w(m.level), w(m.name), w(m.message), w(m.hardware_id), w(m.values);
-}
 
 struct DiagnosticArray {
   Header header;
   std::vector<DiagnosticStatus> status;
+  auto members() { return std::tie(header, status); }
 };
-template <class Wire>
-void fields(Wire& w, DiagnosticArray& m) {
-  w(m.header), w(m.status);
-}
 
 /// std_msgs/Bool and Float64.
 template <class Value>
 struct Plain {
   Value value{};
+  auto members() { return std::tie(value); }
 };
-template <class Wire, class Value>
-void fields(Wire& w, Plain<Value>& m) {
-  w(m.value);
-}
 
 /// A box with a text an object and an arrow where it moves, behind a mark that removes all before.
 /// The more probable the object, the less transparent.

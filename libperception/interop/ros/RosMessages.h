@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <string>
 #include <string_view>
+#include <tuple>
 #include <vector>
 
 #include "libperception/core/Frames.h"
@@ -29,21 +30,15 @@ void fields(Wire& w, Header& m) {
 
 struct Quaternion {
   double x = 0, y = 0, z = 0, w = 1;
+  auto members() { return std::tie(x, y, z, w); }
 };
-template <class Wire>
-void fields(Wire& w, Quaternion& m) {
-  w(m.x), w(m.y), w(m.z), w(m.w);
-}
 
 /// geometry_msgs/Pose and Transform.
 struct Pose {
   std::array<double, 3> position{};
   Quaternion orientation;
+  auto members() { return std::tie(position, orientation); }
 };
-template <class Wire>
-void fields(Wire& w, Pose& m) {
-  w(m.position), w(m.orientation);
-}
 /// Throws std::runtime_error unless all is finite and the quaternion of length 1, within 1 %.
 Pose3 poseOf(const Pose& pose);
 Pose messageOf(const Pose3& pose);
@@ -51,11 +46,8 @@ Pose messageOf(const Pose3& pose);
 struct PoseStamped {
   Header header;
   Pose pose;
+  auto members() { return std::tie(header, pose); }
 };
-template <class Wire>
-void fields(Wire& w, PoseStamped& m) {
-  w(m.header), w(m.pose);
-}
 
 struct Odometry {
   Header header;
@@ -64,30 +56,22 @@ struct Odometry {
   std::array<double, 36> pose_covariance{};
   std::array<double, 6> twist{};  ///< linear, angular; of the child frame
   std::array<double, 36> twist_covariance{};
+  auto members() {
+    return std::tie(header, child_frame_id, pose, pose_covariance, twist, twist_covariance);
+  }
 };
-template <class Wire>
-void fields(Wire& w, Odometry& m) {
-  w(m.header), w(m.child_frame_id), w(m.pose), w(m.pose_covariance), w(m.twist);
-  w(m.twist_covariance);
-}
 
 struct TransformStamped {
   Header header;
   std::string child_frame_id;
   Pose transform;  ///< p_parent = T p_child
+  auto members() { return std::tie(header, child_frame_id, transform); }
 };
-template <class Wire>
-void fields(Wire& w, TransformStamped& m) {
-  w(m.header), w(m.child_frame_id), w(m.transform);
-}
 
 struct TFMessage {
   std::vector<TransformStamped> transforms;
+  auto members() { return std::tie(transforms); }
 };
-template <class Wire>
-void fields(Wire& w, TFMessage& m) {
-  w(m.transforms);
-}
 
 struct NavSatFix {
   Header header;
@@ -97,12 +81,11 @@ struct NavSatFix {
   double altitude = 0;                 ///< [m]
   std::array<double, 9> covariance{};  ///< [m^2] east, north, up
   std::uint8_t covariance_type = 0;
+  auto members() {
+    return std::tie(header, status, service, latitude, longitude, altitude, covariance,
+                    covariance_type);
+  }
 };
-template <class Wire>
-void fields(Wire& w, NavSatFix& m) {
-  w(m.header), w(m.status), w(m.service), w(m.latitude), w(m.longitude), w(m.altitude);
-  w(m.covariance), w(m.covariance_type);
-}
 
 struct Imu {
   Header header;
@@ -112,12 +95,11 @@ struct Imu {
   std::array<double, 9> rates_covariance{};
   std::array<double, 3> force{};  ///< [m/s^2]
   std::array<double, 9> force_covariance{};
+  auto members() {
+    return std::tie(header, orientation, orientation_covariance, rates, rates_covariance, force,
+                    force_covariance);
+  }
 };
-template <class Wire>
-void fields(Wire& w, Imu& m) {
-  w(m.header), w(m.orientation), w(m.orientation_covariance), w(m.rates), w(m.rates_covariance);
-  w(m.force), w(m.force_covariance);
-}
 
 struct PointField {
   enum Type : std::uint8_t { kI8 = 1, kU8, kI16, kU16, kI32, kU32, kF32, kF64 };
@@ -125,11 +107,8 @@ struct PointField {
   std::uint32_t offset = 0;
   std::uint8_t datatype = kF32;
   std::uint32_t count = 1;
+  auto members() { return std::tie(name, offset, datatype, count); }
 };
-template <class Wire>
-void fields(Wire& w, PointField& m) {
-  w(m.name), w(m.offset), w(m.datatype), w(m.count);
-}
 
 struct PointCloud2 {
   Header header;
@@ -139,31 +118,24 @@ struct PointCloud2 {
   std::uint32_t point_step = 0, row_step = 0;  ///< [bytes]
   std::string_view data;
   std::uint8_t is_dense = 1;
+  auto members() {
+    return std::tie(header, height, width, point_fields, is_bigendian, point_step, row_step, data,
+                    is_dense);
+  }
 };
-template <class Wire>
-void fields(Wire& w, PointCloud2& m) {
-  w(m.header), w(m.height), w(m.width), w(m.point_fields), w(m.is_bigendian), w(m.point_step);
-  w(m.row_step), w(m.data), w(m.is_dense);
-}
 
 /// radar_msgs/RadarReturn: m, rad counter-clockwise, rad up, m/s, dB.
 struct RadarReturn {
   float range = 0, azimuth = 0, elevation = 0, doppler_velocity = 0, amplitude = 0;
+  auto members() { return std::tie(range, azimuth, elevation, doppler_velocity, amplitude); }
 };
-template <class Wire>
-void fields(Wire& w, RadarReturn& m) {
-  w(m.range), w(m.azimuth), w(m.elevation), w(m.doppler_velocity), w(m.amplitude);
-}
 
 /// radar_msgs/RadarScan.
 struct RadarScan {
   Header header;
   std::vector<RadarReturn> returns;
+  auto members() { return std::tie(header, returns); }
 };
-template <class Wire>
-void fields(Wire& w, RadarScan& m) {
-  w(m.header), w(m.returns);
-}
 
 struct Image {
   Header header;
@@ -172,21 +144,15 @@ struct Image {
   std::uint8_t is_bigendian = 0;
   std::uint32_t step = 0;  ///< [bytes] a row
   std::string_view data;
+  auto members() { return std::tie(header, height, width, encoding, is_bigendian, step, data); }
 };
-template <class Wire>
-void fields(Wire& w, Image& m) {
-  w(m.header), w(m.height), w(m.width), w(m.encoding), w(m.is_bigendian), w(m.step), w(m.data);
-}
 
 struct CompressedImage {
   Header header;
   std::string format;
   std::string_view data;
+  auto members() { return std::tie(header, format, data); }
 };
-template <class Wire>
-void fields(Wire& w, CompressedImage& m) {
-  w(m.header), w(m.format), w(m.data);
-}
 
 struct CameraInfo {
   Header header;
@@ -210,11 +176,8 @@ struct ObjectHypothesis {
   double score = 0;
   Pose pose;
   std::array<double, 36> covariance{};
+  auto members() { return std::tie(class_id, score, pose, covariance); }
 };
-template <class Wire>
-void fields(Wire& w, ObjectHypothesis& m) {
-  w(m.class_id), w(m.score), w(m.pose), w(m.covariance);
-}
 
 /// vision_msgs/Detection3D of ROS 2.
 struct Detection3D {
@@ -223,19 +186,13 @@ struct Detection3D {
   Pose center;
   std::array<double, 3> size{};  ///< [m]
   std::string id;
+  auto members() { return std::tie(header, results, center, size, id); }
 };
-template <class Wire>
-void fields(Wire& w, Detection3D& m) {
-  w(m.header), w(m.results), w(m.center), w(m.size), w(m.id);
-}
 
 struct Detection3DArray {
   Header header;
   std::vector<Detection3D> detections;
+  auto members() { return std::tie(header, detections); }
 };
-template <class Wire>
-void fields(Wire& w, Detection3DArray& m) {
-  w(m.header), w(m.detections);
-}
 
 }  // namespace perception::ros

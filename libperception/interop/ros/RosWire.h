@@ -6,6 +6,7 @@
 #include <stdexcept>
 #include <string>
 #include <string_view>
+#include <tuple>
 #include <type_traits>
 #include <vector>
 
@@ -13,8 +14,9 @@
 
 namespace perception::ros {
 
-// The two encodings of ROS messages. A message lists its members once, in fields(wire, message) of
-// RosMessages.h; reader and writer of both encodings call it with themselves. Little endian.
+// The two encodings of ROS messages. A message lists its members once, in members(), or where the
+// encodings differ in fields(wire, message) of RosMessages.h; reader and writer of both encodings
+// take them from there. Little endian.
 
 /// ROS 1: packed.
 struct Ros1Format {
@@ -37,6 +39,11 @@ template <std::size_t N>
 struct FixedBytes {
   std::string_view bytes;
 };
+
+template <class Wire, class Message>
+auto fields(Wire& w, Message& m) -> decltype(m.members(), void()) {
+  std::apply([&](auto&... member) { (w(member), ...); }, m.members());
+}
 
 /// Reads a message; throws std::runtime_error with the byte of the message and what was expected.
 template <class Format>
