@@ -53,9 +53,8 @@ packages=(
   liboctomap-dev         # safety grid
   libembree-dev          # ray casting of the simulator
   libopencv-core-dev libopencv-imgproc-dev libopencv-imgcodecs-dev  # labels on pictures, PNG
-  libopencv-dnn-dev libopencv-objdetect-dev libopencv-contrib-dev   # detectors: networks, people, part models
-  libopencv-ml-dev       # random forests of a study
-  libopencv-video-dev libopencv-calib3d-dev  # motion of cameras from their images
+  libopencv-dnn-dev libopencv-objdetect-dev  # detectors: networks, people
+  libopencv-ml-dev libopencv-video-dev libopencv-calib3d-dev  # random forests of a study, motion of cameras from their images
   libmatio-dev           # part models as MATLAB files
   cyclonedds-dev cyclonedds-tools  # observations and scenes between computers
   pybind11-dev python3-dev  # the module perception of Python
@@ -91,6 +90,7 @@ fuzz_packages=(
 bench_packages=(
   python3-numpy python3-scipy  # scores and errors of tracking on KITTI: tests/bench/kitti
   libpcl-dev             # ground by RANSAC, clusters by a tree of points: peers of the lidar front end
+  libopencv-contrib-dev  # cv::dpm, peer of the part models
   libnanoflann-dev       # the same by region growing; kd-tree of snow filters, peers of the trust in returns
 )
 

@@ -8,7 +8,7 @@ find_package(octomap REQUIRED)
 find_package(embree REQUIRED)  # 3 or 4
 # Debian's OpenCVConfig.cmake comes only with the package of all OpenCV modules: name the few that are used.
 find_path(OPENCV_INCLUDE_DIR opencv2/core.hpp PATH_SUFFIXES opencv4 REQUIRED)
-foreach(part core imgproc imgcodecs video calib3d dnn objdetect dpm ml)
+foreach(part core imgproc imgcodecs video calib3d dnn objdetect ml)
   find_library(OPENCV_${part}_LIBRARY opencv_${part} REQUIRED)
   add_library(opencv_${part} UNKNOWN IMPORTED)
   set_target_properties(opencv_${part} PROPERTIES IMPORTED_LOCATION ${OPENCV_${part}_LIBRARY}

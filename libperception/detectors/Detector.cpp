@@ -143,7 +143,6 @@ std::string DetectorSetup::pathOf(const DetectorModelParams& model) const {
 
 const std::vector<DetectorBackend>& detectorBackends() {
   static const std::vector<DetectorBackend> rows{{"dpm", kMakeDpm},
-                                                 {"cvdpm", &makeCvDpmDetector},
                                                  {"onnx", &makeOnnxDetector},
                                                  {"hog", &makeHogDetector},
                                                  {"file", &makeNothing}};

@@ -100,7 +100,6 @@ const std::vector<DetectorBackend>& detectorBackends();
 std::unique_ptr<Detector> makeDetector(const DetectorSetup& setup);
 
 std::unique_ptr<Detector> makeDpmDetector(const DetectorSetup& setup);
-std::unique_ptr<Detector> makeCvDpmDetector(const DetectorSetup& setup);
 std::unique_ptr<Detector> makeOnnxDetector(const DetectorSetup& setup);
 std::unique_ptr<Detector> makeHogDetector(const DetectorSetup& setup);
 

@@ -182,7 +182,7 @@ TEST(DetectorSetup, ModelsAreInItsFolderOrWhereTheEnvironmentSays) {
 TEST(OnnxDetector, RefusesWhatIsNoNetwork) {
   const TemporaryFolder folder;
   DetectorSetup setup;
-  setup.backend = 2;
+  setup.backend = 1;
   DetectorModelParams model;
   model.file = folder / "no.onnx";
   model.names = {"2=Car"};
@@ -199,7 +199,7 @@ TEST(OnnxDetector, RefusesAnInputSizeThatTheNetworkCannotTake) {
   net.names = {"2=Car"};
   if (!std::filesystem::exists(net.file)) GTEST_SKIP() << "no " << net.file;
   DetectorSetup setup;
-  setup.backend = 2;
+  setup.backend = 1;
   setup.models = {{"net", net}};
   setup.onnx.input = 100;  // it takes 416, or another multiple of its stride
   try {
@@ -223,7 +223,7 @@ TEST(OnnxDetector, WindowsShowALongImageAtItsOwnScale) {
   const Raster image{pixels.cols, pixels.rows, 3, {pixels.datastart, pixels.dataend}};
   const auto boxesOf = [&](bool windows, double overlap) {
     DetectorSetup setup;
-    setup.backend = 2;
+    setup.backend = 1;
     setup.models = {{"net", net}};
     setup.onnx.windows = windows;
     setup.onnx.window_overlap = overlap;

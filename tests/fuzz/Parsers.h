@@ -14,7 +14,7 @@ struct Parser {
 
 /// All but those whose libraries are known to fail on bad bytes and which the programs therefore
 /// read within a ReadingScope: rawlogs (MRPT allocates what a length in the file says; their bytes
-/// are changed in tests/sensors/rawlog/RawlogReader_test.cpp), part models and cascades (matio,
+/// are changed in tests/sensors/rawlog/RawlogReader_test.cpp), part models (matio,
 /// OpenCV), networks and images.
 const std::vector<Parser>& parsers();
 

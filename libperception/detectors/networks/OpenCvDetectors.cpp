@@ -1,24 +1,15 @@
-#include <fmt/format.h>
-
 #include <algorithm>
-#include <cstdint>
 #include <mutex>
 #include <opencv2/core.hpp>
-#include <opencv2/dpm.hpp>
 #include <opencv2/imgproc.hpp>
 #include <opencv2/objdetect.hpp>
 
-#include "libperception/core/Error.h"
-#include "libperception/core/system/MemoryLimit.h"
-#include "libperception/core/system/Supervision.h"
 #include "libperception/detectors/CvRaster.h"
 #include "libperception/detectors/Detector.h"
 #include "libperception/detectors/Suppression.h"
 
 namespace perception {
 namespace {
-
-constexpr std::uint64_t kLargestCascade = 512ULL << 20;  // [bytes] that reading may take; assumed
 
 bool admitted(const ObjectDetection& o, const std::optional<GroundGate>& gate, double low,
               double high) {
@@ -39,76 +30,6 @@ ObjectDetection objectOf(const cv::Rect2d& box, const std::string& label, double
 bool isBox(const ObjectDetection& o) {
   return o.image_box->x2 > o.image_box->x1 && o.image_box->y2 > o.image_box->y1;
 }
-
-/// cv::dpm of OpenCV's contrib modules: cascades of star models, without headings.
-class CvDpmDetector final : public Detector {
- public:
-  explicit CvDpmDetector(const DetectorSetup& setup) {
-    std::vector<std::string> files, names;
-    for (const auto& [name, params] : setup.models) {
-      files.push_back(setup.pathOf(params));
-      names.push_back(params.label.empty() ? name : params.label);
-      params_.push_back(params);
-    }
-    try {
-      const ReadingScope scope(files.front());
-      {
-        const MemoryLimit limit(addressSpace() + kLargestCascade);
-        detector_ = cv::dpm::DPMDetector::create(files, names);
-      }
-      if (!detector_ || detector_->isEmpty())
-        throw DataError(fmt::format("{}: cv::dpm cannot read it", files.front()));
-      probe();
-    } catch (const cv::Exception& e) {
-      throw DataError(fmt::format("{}: cv::dpm cannot read it: {}", files.front(), e.err));
-    }
-    names_ = names;
-    file_ = files.front();
-  }
-
-  std::vector<ObjectDetection> detect(const Raster& image,
-                                      const SearchRegion& region) const override {
-    cv::Mat pixels = colorMat(image).clone();  // cv::dpm changes its input
-    std::vector<cv::dpm::DPMDetector::ObjectDetection> found;
-    {
-      const std::lock_guard<std::mutex> lock(one_at_a_time_);
-      try {
-        detector_->detect(pixels, found);
-      } catch (const cv::Exception& e) {
-        throw DataError(
-            fmt::format("{}: cv::dpm fails on an image of {} x {}: smaller than the "
-                        "model, or the file is damaged ({})",
-                        file_, image.width, image.height, e.err));
-      }
-    }
-    std::vector<ObjectDetection> out;
-    for (const auto& f : found) {
-      const auto id = static_cast<std::size_t>(f.classID);
-      if (id >= names_.size()) continue;
-      auto o = objectOf(f.rect, names_[id], static_cast<double>(f.score), image);
-      if (isBox(o) && o.score >= params_[id].threshold &&
-          admitted(o, region.ground, params_[id].low, params_[id].high))
-        out.push_back(std::move(o));
-    }
-    constexpr double kSame = 0.5;
-    return suppressed(std::move(out), kSame);
-  }
-
- private:
-  /// What a damaged cascade does to the library it does here, within the scope of its reading.
-  void probe() const {
-    cv::Mat gray(kProbeSide, kProbeSide, CV_8UC3, cv::Scalar::all(128));
-    std::vector<cv::dpm::DPMDetector::ObjectDetection> found;
-    detector_->detect(gray, found);
-  }
-
-  static constexpr int kProbeSide = 320;  // [px] all common cascades fit into it
-  mutable std::mutex one_at_a_time_;
-  cv::Ptr<cv::dpm::DPMDetector> detector_;
-  std::string file_;  ///< the first cascade
-  std::vector<std::string> names_;
-  std::vector<DetectorModelParams> params_;
-};
 
 /// OpenCV's default people detector (Dalal and Triggs, INRIA).
 class HogDetector final : public Detector {
@@ -154,10 +75,6 @@ class HogDetector final : public Detector {
 };
 
 }  // namespace
-
-std::unique_ptr<Detector> makeCvDpmDetector(const DetectorSetup& setup) {
-  return std::make_unique<CvDpmDetector>(setup);
-}
 
 std::unique_ptr<Detector> makeHogDetector(const DetectorSetup& setup) {
   return std::make_unique<HogDetector>(setup);

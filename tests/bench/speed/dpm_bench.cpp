@@ -13,6 +13,7 @@
 #include <fstream>
 #include <functional>
 #include <opencv2/core.hpp>
+#include <opencv2/dpm.hpp>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 #include <string>
@@ -111,18 +112,11 @@ DetectorSetup bank(bool people) {
   return setup;
 }
 
-DetectorSetup cascades() {
-  DetectorSetup setup;
-  setup.backend = 1;
-  setup.folder = PERCEPTION_SHARED_DATA "/models";
-  DetectorModelParams car;
-  car.file = "car_voc2007.xml";
-  car.label = "Car";
-  DetectorModelParams person;
-  person.file = "person_voc2007.xml";
-  person.label = "Pedestrian";
-  setup.models = {{"car", car}, {"pedestrian", person}};
-  return setup;
+/// The peer: star cascades of OpenCV's contributed modules.
+cv::Ptr<cv::dpm::DPMDetector> cascades() {
+  const std::string folder = PERCEPTION_SHARED_DATA "/models/";
+  return cv::dpm::DPMDetector::create({folder + "car_voc2007.xml", folder + "person_voc2007.xml"},
+                                      {"Car", "Pedestrian"});
 }
 
 Pose3 roofCamera(double height) {
@@ -190,8 +184,14 @@ void costs(int threads) {
     }
   }
   fmt::print("peak memory so far {}\n", memory());
-  const ImageDetector peer(cascades());
-  const auto peer_tile = [&] { peer.detect(small, sphere.tileCamera(), {}); };
+  const cv::Ptr<cv::dpm::DPMDetector> peer = cascades();
+  const cv::Mat pixels(small.height, small.width, CV_8UC3,
+                       const_cast<std::uint8_t*>(small.pixels.data()));
+  const auto peer_tile = [&] {
+    cv::Mat copy = pixels.clone();  // cv::dpm changes its input
+    std::vector<cv::dpm::DPMDetector::ObjectDetection> found;
+    peer->detect(copy, found);
+  };
   const Cost alone = costOf(1, 3, peer_tile), together = costOf(threads, 3, peer_tile);
   print("tile 512:    cv::dpm, 6 car + 6 person components, no heading", alone, together);
   fmt::print("peak memory with cv::dpm {}\n", memory());
