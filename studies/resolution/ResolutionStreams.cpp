@@ -14,7 +14,7 @@ namespace perception {
 /// A sensor set with its tracker.
 class ResolutionStreams::Stream {
  public:
-  Stream(const ResolutionSite& site, const std::string& letters, int resolution, bool log_odds) {
+  Stream(const ResolutionSite& site, const std::string& letters, int resolution) {
     run.name = letters;
     run.resolution = resolution;
     run.lidar = letters.find(letterOf(Modality::kLidar)) != std::string::npos;
@@ -24,10 +24,6 @@ class ResolutionStreams::Stream {
       const char* name = cameraResolutions()[static_cast<std::size_t>(resolution)].name;
       config.set(fmt::format("{}.resolution={}", section, name));
       run.name = fmt::format("C-{}{}", name, letters.substr(1));
-    }
-    if (log_odds) {
-      config.set(section + ".detector.min_score=0");
-      config.set(section + ".detector.score_slope=1");
     }
     for (const std::string& setting : site.settings) config.set(setting);
     config.set("run.sensors=" + letters);
@@ -48,10 +44,10 @@ class ResolutionStreams::Stream {
 };
 
 ResolutionStreams::ResolutionStreams(const ResolutionSite& site, const std::set<char>& letters,
-                                     const std::vector<int>& resolutions, bool log_odds) {
+                                     const std::vector<int>& resolutions) {
   const std::string radar = letters.count(letterOf(Modality::kRadar)) ? "+R" : "";
   const auto add = [&](const std::string& set, int resolution) {
-    streams_.push_back(std::make_unique<Stream>(site, set, resolution, log_odds));
+    streams_.push_back(std::make_unique<Stream>(site, set, resolution));
   };
   for (const int r : resolutions) add("C" + radar, r);
   if (!letters.count(letterOf(Modality::kLidar))) return;

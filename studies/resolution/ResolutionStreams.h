@@ -21,10 +21,9 @@ struct ResolutionSite {
 /// with its own pipeline: C-1k+R ..., L+R, C+L+R at the best resolution.
 class ResolutionStreams {
  public:
-  /// `letters` (C, L, R) of the other available sensors, `resolutions` of the camera; `log_odds`:
-  /// its scores are log-odds, and boxes with negative ones are dropped.
+  /// `letters` (C, L, R) of the other available sensors, `resolutions` of the camera.
   ResolutionStreams(const ResolutionSite& site, const std::set<char>& letters,
-                    const std::vector<int>& resolutions, bool log_odds);
+                    const std::vector<int>& resolutions);
   ~ResolutionStreams();
 
   /// Passes an observation to the sets with that camera; with resolution -1 to all.

@@ -1,7 +1,6 @@
 #include "studies/StudyApp.h"
 
 #include <gtest/gtest.h>
-#include <mrpt/obs/CObservationImage.h>
 
 #include <algorithm>
 #include <filesystem>
@@ -12,8 +11,6 @@
 
 #include "libperception/app/track/TrackApp.h"
 #include "libperception/pipeline/input/LogRecorder.h"
-#include "libperception/sensors/observations/Conversions.h"
-#include "libperception/sensors/rawlog/RawlogWriter.h"
 #include "tests/support/TemporaryFolder.h"
 
 namespace perception {
@@ -99,34 +96,6 @@ TEST(StudyApp, ResolutionTracksEverySensorSetOfThePaper) {
             (std::vector<std::string>{"C-1k+R", "C-2k+R", "C-4k+R", "C-8k+R", "L+R", "C-8k+L+R"}));
   const auto& seen = tableOf(app.out_report, "detection_rate").rows;
   EXPECT_GT(std::stod(seen[3][1]), std::stod(seen[0][1]));  // 8k sees more than 1k
-}
-
-TEST(StudyApp, ResolutionTakesTheImagesOfALog) {
-  const test::TemporaryFolder folder;
-  std::ofstream(folder / "hog.ini")
-      << "[detector]\nbackend = hog\n[model.people]\nlabel = Pedestrian\nthreshold = 0\n";
-  {
-    RawlogWriter log(folder / "panorama.rawlog");
-    for (int i = 0; i < 2; ++i) {
-      mrpt::obs::CObservationImage image;
-      image.timestamp = fromStamp(Stamp{1317038400000000000LL + i * 100000000LL});
-      image.sensorLabel = "CAMERA";
-      image.image = mrpt::img::CImage(2048, 1024, mrpt::img::CH_RGB);
-      log.write(image);
-    }
-    log.close();
-  }
-  StudyApp app;
-  const std::string site = std::string(PERCEPTION_SOURCE_DIR) + "/ini/skynet.ini",
-                    log = folder / "panorama.rawlog", hog = folder / "hog.ini",
-                    out = folder / "out";
-  const char* argv[] = {"perception-study", "resolution", "-c",        site.c_str(), "--log",
-                        log.c_str(),        "--detector", hog.c_str(), "-o",         out.c_str()};
-  ASSERT_EQ(runApp(app, 10, argv), 0);
-  const auto& rows = tableOf(app.out_report, "tracking_rate").rows;
-  ASSERT_EQ(rows.size(), 2U);  // nothing is enlarged to 4k
-  EXPECT_EQ(rows[0][0], "C-1k");
-  EXPECT_EQ(rows[1][0], "C-2k");
 }
 
 TEST(StudyApp, UnknownStudiesAreAUsageError) {
