@@ -8,7 +8,6 @@
 #include <memory>
 #include <new>
 #include <system_error>
-#include <utility>
 
 #include "libperception/core/Error.h"
 #include "libperception/core/system/KeptHeap.h"

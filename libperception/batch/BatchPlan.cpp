@@ -4,8 +4,6 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <map>
-#include <set>
 
 #include "libperception/config/IniFile.h"
 #include "libperception/config/IniValue.h"

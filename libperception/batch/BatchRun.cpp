@@ -10,7 +10,6 @@
 #include <fstream>
 #include <iterator>
 #include <map>
-#include <numeric>
 #include <thread>
 
 #include "libperception/pipeline/output/FinishedRun.h"

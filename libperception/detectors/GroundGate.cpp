@@ -1,7 +1,6 @@
 #include "libperception/detectors/GroundGate.h"
 
 #include <cmath>
-#include <limits>
 
 namespace perception {
 

@@ -4,7 +4,6 @@
 #include <exception>
 #include <memory>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "libperception/core/Error.h"

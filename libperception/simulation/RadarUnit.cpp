@@ -1,7 +1,6 @@
 #include "libperception/simulation/RadarUnit.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "libperception/simulation/RadarClutter.h"

@@ -7,7 +7,6 @@
 #include <cmath>
 #include <tuple>
 #include <utility>
-#include <variant>
 
 #include "libperception/sensors/frames/ToObservation.h"
 #include "libperception/sensors/observations/Conversions.h"

@@ -6,7 +6,6 @@
 #include <array>
 #include <cmath>
 #include <optional>
-#include <utility>
 
 #include "libperception/core/Error.h"
 #include "studies/weather/WeatherLogs.h"

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 #include <mrpt/config/CConfigFileBase.h>
 
-#include <chrono>
 #include <utility>
 
 #include "libperception/core/Error.h"

@@ -10,7 +10,6 @@
 #include <filesystem>
 #include <iterator>
 #include <memory>
-#include <optional>
 
 #include "libperception/core/Error.h"
 #include "libperception/core/math/Angle.h"

@@ -1,7 +1,6 @@
 #include "libperception/evaluation/metrics/TrackingBenchmark.h"
 
 #include <algorithm>
-#include <cmath>
 #include <functional>
 #include <iterator>
 #include <limits>

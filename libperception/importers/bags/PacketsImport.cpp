@@ -2,7 +2,6 @@
 
 #include <CLI/CLI.hpp>
 #include <memory>
-#include <optional>
 
 #include "libperception/core/Error.h"
 #include "libperception/importers/Importer.h"

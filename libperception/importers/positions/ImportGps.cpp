@@ -2,7 +2,6 @@
 
 #include <mrpt/obs/CObservationGPS.h>
 
-#include <algorithm>
 #include <cmath>
 #include <optional>
 

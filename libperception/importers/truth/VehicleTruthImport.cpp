@@ -4,8 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <deque>
-#include <map>
-#include <optional>
 
 #include "libperception/config/Config.h"
 #include "libperception/core/Error.h"

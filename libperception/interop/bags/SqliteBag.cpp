@@ -9,8 +9,6 @@
 #include <fstream>
 #include <limits>
 #include <map>
-#include <string_view>
-#include <utility>
 
 #include "libperception/core/Error.h"
 #include "libperception/interop/bags/Compression.h"

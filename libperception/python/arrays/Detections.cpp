@@ -6,7 +6,6 @@
 
 #include <cmath>
 #include <optional>
-#include <utility>
 
 #include "libperception/core/Error.h"
 #include "libperception/python/arrays/Arrays.h"

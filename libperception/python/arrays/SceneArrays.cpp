@@ -1,6 +1,5 @@
 #include "libperception/python/arrays/SceneArrays.h"
 
-#include <cmath>
 #include <cstdint>
 #include <cstring>
 #include <limits>

@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <string>
 
 #include "libperception/simulation/lidar/LidarCaster.h"
 #include "libperception/simulation/world/World.h"

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 
 #include "libperception/simulation/recorded/ImageRanges.h"
 #include "libperception/simulation/world/Scenario.h"

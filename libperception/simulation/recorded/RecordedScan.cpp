@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <map>
-#include <utility>
 
 #include "libperception/simulation/lidar/LidarCaster.h"
 #include "libperception/simulation/lidar/LidarEcho.h"

@@ -6,7 +6,6 @@
 #include <cmath>
 #include <map>
 #include <optional>
-#include <utility>
 
 namespace perception {
 namespace {
