@@ -100,8 +100,10 @@ std::vector<EncounterScore> runParticles(const ParticlesMethod& method, int scen
   const FilterModel model = modelOf(method);
   std::vector<EncounterScore> runs(static_cast<std::size_t>(scenes));
   tbb::parallel_for(std::size_t{0}, runs.size(), [&](std::size_t i) {
-    runs[i] =
-        runEncounter("U", kBusy, model, method.particles, i + 1, 1000 * method.filter_seed + i);
+    const std::uint64_t seed = i + 1;
+    Rng world({seed, 0, 0, 1});
+    runs[i] = runEncounter(busyStreet(world), kBusy, model, method.particles, seed,
+                           1000 * method.filter_seed + i);
   });
   return runs;
 }

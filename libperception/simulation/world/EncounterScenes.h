@@ -22,12 +22,8 @@ struct EncounterScene {
   std::size_t instants() const { return objects.empty() ? 0 : objects.front().path.size(); }
 };
 
-/// By name: A (an oncoming car stops and passes), B (a crossing car), Cd (two pedestrians cross at
-/// a distance of d meters), D (four pedestrians in a crowd, two parked cars), Es_p (two pedestrians
-/// meet at a distance of s meters, pause p seconds, then pass or turn back), U (a busy street of 8
-/// s: eight parked cars, six pedestrians, three passing cars). Throws Error(kUsage) for an unknown
-/// name.
-EncounterScene encounterScene(const std::string& name, Rng& rng);
+/// A busy street of 8 s: eight parked cars, six pedestrians, three passing cars.
+EncounterScene busyStreet(Rng& rng);
 
 /// Difficulty of a scene.
 struct EncounterConditions {
