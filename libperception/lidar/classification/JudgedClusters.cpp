@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "libperception/lidar/classification/PhantomPrior.h"
+#include "libperception/lidar/classification/VehiclePieces.h"
 #include "libperception/lidar/outline/BoxFit.h"
 #include "libperception/lidar/segments/LooseReturns.h"
 #include "libperception/measurement/models/FootprintInView.h"
@@ -158,16 +159,9 @@ PhantomCluster phantomOf(const LidarDetections& found, const std::vector<std::ui
   return phantom;
 }
 
-/// Of a vehicle that no second one fits into: its parts are no vehicles [m] (assumed).
-constexpr float kOneVehicle[2] = {6, 2.5f};
 /// Probability from which it is one, if none of its parts is a person or a cyclist and two may be
 /// vehicles.
 constexpr double kLikelyWhole = 0.5, kPerhaps = 0.2;
-
-bool holdsOneVehicle(const Descriptor& d) {
-  return d[static_cast<std::size_t>(Feature::kLength)] <= kOneVehicle[0] &&
-         d[static_cast<std::size_t>(Feature::kWidth)] <= kOneVehicle[1];
-}
 
 /// Marks the clusters that stand for themselves.
 std::vector<char> standing(const std::vector<DescribedCluster>& clusters) {
@@ -217,10 +211,12 @@ Judgement judgedClusters(const LidarDetections& found, const LidarCloud& cloud,
     return roadUser(p) < kSureWhole &&
            at(p, ClusterKind::kThing) + at(p, ClusterKind::kPhantom) < kSureThing;
   };
-  auto clusters = describedClusters(found, cloud, cells, judge, reach);
+  const ClusterDescriber describer(found, cloud, cells);
+  auto clusters = describedClusters(found, describer, judge, reach);
   const std::size_t n = clusters.size();
   const PhantomPrior prior(classifier.prior());
-  const std::vector<char> stands = standing(clusters);
+  std::vector<char> stands = standing(clusters);
+  joinPieces(found, describer, judge, clusters, stands);
   Judgement judgement;
   std::vector<JudgedCluster>& judged = judgement.clusters;
   judgement.phantom.assign(found.obstacles.size(), PlacedReturns::kNoCluster);

@@ -61,10 +61,15 @@ std::vector<DescribedCluster> describedClusters(const LidarDetections& found,
                                                 const LidarCloud& cloud,
                                                 const DirectionCells& cells,
                                                 const ClusterVisitor& visit, double reach) {
+  return describedClusters(found, ClusterDescriber(found, cloud, cells), visit, reach);
+}
+
+std::vector<DescribedCluster> describedClusters(const LidarDetections& found,
+                                                const ClusterDescriber& describer,
+                                                const ClusterVisitor& visit, double reach) {
   constexpr double kLeastReturns = 8, kLongest = 20;  // [m]
   Vector3 sensor = found.points.sensor;
   sensor.z() -= found.surface.heightAt(sensor.x(), sensor.y());
-  const ClusterDescriber describer(found, cloud, cells);
   const SegmentFinder finder(found.x, found.y, found.above, kLeastReturns, kLongest, found.trust,
                              sensor);
   std::vector<std::vector<DescribedCluster>> of_tree(finder.trees());

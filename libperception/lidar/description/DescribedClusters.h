@@ -30,4 +30,9 @@ std::vector<DescribedCluster> describedClusters(const LidarDetections& found,
                                                 const ClusterVisitor& visit = {},
                                                 double reach = 1e9);
 
+/// The same by a describer of that scan.
+std::vector<DescribedCluster> describedClusters(const LidarDetections& found,
+                                                const ClusterDescriber& describer,
+                                                const ClusterVisitor& visit, double reach);
+
 }  // namespace perception
