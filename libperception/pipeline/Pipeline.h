@@ -20,7 +20,7 @@
 #include "libperception/pipeline/watches/ConditionWatch.h"
 #include "libperception/pipeline/watches/InnovationWatch.h"
 #include "libperception/pipeline/watches/InputWatch.h"
-#include "libperception/pipeline/watches/SensorHealth.h"
+#include "libperception/pipeline/health/SensorHealth.h"
 #include "libperception/pipeline/watches/SensorWatch.h"
 #include "libperception/scene/files/EventLog.h"
 #include "libperception/scene/files/RunTiming.h"

@@ -34,20 +34,25 @@ def pooled(values):
 
 
 def health(files):
-    named, late, cases = {"C": 0, "R": 0}, 0, {"C": 0, "R": 0}
+    named, late, cases, frozen, of, tellable = {"C": 0, "R": 0}, 0, {"C": 0, "R": 0}, 0, 0, 0
     for line in open(files[0]):
-        sensor, fault, _, _, after = [cell.strip() for cell in line.split(";")[0].split(",")[:5]]
+        sensor, fault, _, _, after, limit = [cell.strip() for cell in line.split(";")[0].split(",")[:6]]
         letter = "C" if sensor.startswith("CAMERA") else "R" if sensor.startswith("RADAR") else None
+        in_time = 0 <= float(after) <= 2
+        if letter and fault == "frozen":
+            frozen, of = frozen + in_time, of + 1
         if letter is None or fault != "blind":
             continue
         cases[letter] += 1
-        named[letter] += 0 <= float(after) <= 2
+        named[letter] += in_time
         late += float(after) > 2
+        tellable += float(limit) <= math.log(1e-5)
     false = 0
     for path in files[1:]:
         false += sum(json.loads(line)["kind"] in SENSOR_FAULTS for line in open(path))
     text = (f"blind, named within 2 s: camera {named['C']} of {cases['C']}, radars {named['R']} of {cases['R']}, "
-            f"{late} later (simulated); {false} named in {len(files) - 1} clear logs")
+            f"{late} later ({tellable} can be told from healthy ones in 2 s); frozen: {frozen} of {of} (simulated); "
+            f"{false} named in {len(files) - 1} clear logs")
     return text, "27 of 27; none in clear air", sum(named.values()) == sum(cases.values()) == 27 and false == 0
 
 

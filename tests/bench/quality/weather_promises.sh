@@ -80,14 +80,14 @@ kitti0000() {
     --detections "rrc:Car=$k/det_rrc/Car/0000.txt" --detections "rrc:Pedestrian=$k/det_rrc/Pedestrian/0000.txt" -o "$log"
 }
 
-# 1. Each camera and radar blind from three instants on; no sensor named in a clear recording.
+# 1. Each camera and radar blind, and each frozen, from three instants on; no sensor named in a clear recording.
 health() {
   local study=$bench/blind_sensor_study found=() entry ini
   [[ -x $study ]] || { absent health "$study, built by ./setup.sh bench"; return; }
   kitti0000 || { absent health "$data/kitti_lidar_seq0000"; return; }
   local clear=$log
   scene A own --trial 3
-  [[ -f $out/blind.txt ]] || "$study" "$log" ini/skynet_shapes.ini - 3 11 17 >"$out/blind.txt"
+  [[ -f $out/blind.txt ]] || "$study" "$log" ini/skynet_shapes.ini - 3 11 17 blind frozen >"$out/blind.txt"
   for entry in "ini/kitti.ini=$clear" "ini/demo.ini=rawlogs/demo.rawlog" ${RECORDINGS:-}; do
     ini=${entry%%=*}
     track "${entry#*=}" "clear_$(basename "$entry" .rawlog)" "$ini" C+L+R

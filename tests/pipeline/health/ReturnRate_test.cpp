@@ -1,4 +1,4 @@
-#include "libperception/pipeline/watches/ReturnRate.h"
+#include "libperception/pipeline/health/ReturnRate.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "libperception/pipeline/watches/ReturnRate.h"
+#include "libperception/pipeline/health/ReturnRate.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "libperception/pipeline/watches/WindowDirt.h"
+#include "libperception/pipeline/health/WindowDirt.h"
 
 #include <gtest/gtest.h>
 

@@ -1,9 +1,10 @@
-#include "libperception/pipeline/watches/SensorDoubt.h"
+#include "libperception/pipeline/health/SensorDoubt.h"
 
 #include <algorithm>
 #include <cmath>
 #include <iterator>
 #include <utility>
+#include <vector>
 
 #include "libperception/filter/likelihood/LikelihoodRow.h"
 #include "libperception/filter/state/ClassFilterMotion.h"
@@ -40,6 +41,13 @@ bool isWitness(const Track& track, const MeasurementScan& scan) {
   for (std::size_t k = 0; k < track.last_hit.size(); ++k)
     if (k != own && scan.state.stamp - track.last_hit[k] <= kOthersHit) return true;
   return false;
+}
+
+/// Whether an object is nearer to a radar than it is long: the beam meets a part of its side, at a
+/// slant, and the tables do not hold.
+bool isBeside(const Kinematics& object, const Extent& extent, const MeasurementScan& scan) {
+  const Vector2 from = scan.state.T_world_sensor.translation().head<2>();
+  return scan.modality == Modality::kRadar && (object.q.head<2>() - from).norm() < extent.length;
 }
 
 /// Whether the sensor's tables say how often it detects the object: a road user whose class is
@@ -99,6 +107,7 @@ void SensorDoubt::add(const MeasurementScan& scan, const Hypothesis& tracks,
     const ClassId c = track->likeliestClass();
     const ClassFilter& filter = track->bank[track->filterOf(static_cast<std::size_t>(c))];
     const Kinematics object = kinematicsOf(model.classes[c], filter);
+    if (isBeside(object, filter.extent, scan)) continue;
     const double open = visibilityOf(*track, scan, model);
     if (open < kLeastShare) continue;
     const double table =
@@ -121,6 +130,19 @@ void SensorDoubt::add(const MeasurementScan& scan, const Hypothesis& tracks,
     if (const auto error = bearingError(scan.measurements[*place], object, filter.extent, scan))
       addBearing(scan.state.stamp, track->id, *error);
   }
+}
+
+void SensorDoubt::addPlaces(const MeasurementScan& scan, const Hypothesis& tracks,
+                            const FilterModel& model, const FamiliarPlaces::View& view,
+                            const FamiliarPlaces::StillThere& stillThere) {
+  std::vector<Vector2> tracked;
+  for (const TrackHandle& track : tracks.tracks) {
+    if (!isWitness(*track, scan)) continue;
+    const ClassId c = track->likeliestClass();
+    const ClassFilter& filter = track->bank[track->filterOf(static_cast<std::size_t>(c))];
+    tracked.push_back(kinematicsOf(model.classes[c], filter).q.head<2>());
+  }
+  places_.add(scan, silent_ > 0, view, tracked, stillThere);
 }
 
 void SensorDoubt::forget(Stamp now) {
@@ -155,7 +177,8 @@ void SensorDoubt::addBearing(Stamp stamp, std::uint64_t object, double error) {
 }
 
 double SensorDoubt::logSilence() const {
-  return log_missed_ + (usual_ ? usual_->logSilence(static_cast<double>(silent_)) : 0);
+  const double unclaimed = usual_ ? usual_->logSilence(static_cast<double>(silent_)) : 0;
+  return log_missed_ + std::min(unclaimed, places_.logMissed());
 }
 
 std::optional<double> SensorDoubt::offset(Stamp now) const {

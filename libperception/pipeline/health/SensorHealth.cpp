@@ -1,4 +1,4 @@
-#include "libperception/pipeline/watches/SensorHealth.h"
+#include "libperception/pipeline/health/SensorHealth.h"
 
 #include <fmt/format.h>
 
@@ -24,13 +24,17 @@ std::string hardlyFor(double seconds) {
 }  // namespace
 
 SensorHealth::SensorHealth(const std::vector<PipelineSetup::Sensor>& sensors, EventLog& events)
-    : sensors_(sensors), events_(events), states_(sensors.size()) {}
+    : sensors_(sensors), events_(events), states_(sensors.size()) {
+  for (const auto& s : sensors) radars_ |= s.active && s.params.modality == Modality::kRadar;
+}
 
 void SensorHealth::addFrame(std::size_t sensor, const SensorFrame& frame, double fog) {
   State& state = states_[sensor];
   bool empty = false;
+  state.picture.add(frame);
   if (const auto* cloud = std::get_if<LidarCloud>(&frame.data)) {
     if (fog < kFog) judgeWindow(sensor, *cloud, frame.stamp);
+    if (radars_) state.standing.add(frame, *cloud);
     state.returns.add(cloud->size(), frame.stamp);
     empty = state.returns.empty();
     if (const auto blind = state.returns.blindFor(); blind && state.fault != Fault::kBlind)
@@ -45,7 +49,17 @@ void SensorHealth::addFrame(std::size_t sensor, const SensorFrame& frame, double
     return;
   }
   state.empty_since.reset();
-  if (state.fault == Fault::kBlind) report(sensor, frame.stamp, Fault::kNone, "sees again");
+  judgeFrozen(sensor, frame.stamp);
+}
+
+void SensorHealth::judgeFrozen(std::size_t sensor, Stamp stamp) {
+  const State& state = states_[sensor];
+  const auto frozen = state.picture.frozen();
+  if (!frozen && state.fault == Fault::kBlind) report(sensor, stamp, Fault::kNone, "sees again");
+  if (frozen && state.fault != Fault::kBlind)
+    report(sensor, stamp, Fault::kBlind,
+           fmt::format("the same frame for {:.1f} s and {:.0f} m of way", frozen->seconds,
+                       frozen->meters));
 }
 
 void SensorHealth::addPart(std::size_t sensor, const SensorFrame& part) {
@@ -98,6 +112,14 @@ void SensorHealth::addScan(std::size_t sensor, const MeasurementScan& scan,
     state.doubt.hear(clutter);
   }
   state.doubt.add(scan, tracks, model, seen_share);
+  if (scan.modality == Modality::kRadar) {
+    const DetectionParams& params = sensors_[sensor].params;
+    const auto stillThere = [&](const Vector2& place) {
+      return std::any_of(states_.begin(), states_.end(),
+                         [&](const State& s) { return s.standing.at(place, scan.state.stamp); });
+    };
+    state.doubt.addPlaces(scan, tracks, model, {params.fov, params.range_max}, stillThere);
+  }
   judge(sensor, scan.state.stamp);
 }
 

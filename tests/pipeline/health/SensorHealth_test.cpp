@@ -1,4 +1,4 @@
-#include "libperception/pipeline/watches/SensorHealth.h"
+#include "libperception/pipeline/health/SensorHealth.h"
 
 #include <gtest/gtest.h>
 
@@ -41,9 +41,10 @@ struct HealthWatched {
   SensorHealth health{sensors, events};
 
   template <class Data>
-  void see(std::size_t place, double t, Data data, double fog = 0) {
+  void see(std::size_t place, double t, Data data, double fog = 0, double way = 0) {
     SensorFrame frame;
     frame.stamp = kStart + t;
+    frame.ego.T_world_ego.translation().x() = way;
     frame.sensor = sensors[place].label;
     // Cameras look along z of their frame, x to the right.
     if (place == kCameraHealth) frame.T_ego_sensor.linear() << 0, 0, 1, -1, 0, 0, 0, -1, 0;
@@ -80,6 +81,7 @@ struct HealthWatched {
     car.id = 1, car.existence = 0.99, car.birth = kStart + (t - 5), car.log_class = {0};
     car.bank.resize(1);
     car.bank[0].x << x, 0, speed, 0;
+    car.bank[0].extent.length = 5;
     car.last_hit[modalityIndex(Modality::kLidar)] = scan.state.stamp;
     if (!detections.empty()) car.last_hit[modalityIndex(scan.modality)] = scan.state.stamp;
     if (!clutter) clutter = std::make_shared<const ClutterMap>(sensors[place].params);
@@ -133,6 +135,19 @@ TEST(SensorHealth, ARadarIsJudgedByWhatMoves) {
       w.scan(kRadarHealth, 0.1 * k, 15, speed, {});
     }
     EXPECT_EQ(w.count(event_kind::kSensorBlind), speed > 0 ? 1U : 0U);
+  }
+}
+
+TEST(SensorHealth, ARadarIsNotJudgedByWhatPassesBesideIt) {
+  RadarReturns some;
+  some.returns.resize(1);  // something else, so that it is not silent
+  for (const double x : {4.0, 15.0}) {
+    HealthWatched w;
+    for (int k = 0; k <= 20; ++k) {
+      w.see(kRadarHealth, 0.1 * k, some);
+      w.scan(kRadarHealth, 0.1 * k, x, 10, {});
+    }
+    EXPECT_EQ(w.count(event_kind::kSensorFouled), x > 5 ? 1U : 0U);
   }
 }
 
@@ -225,6 +240,45 @@ TEST(SensorHealth, ARadarThatNoLongerSeesAStandingObjectThatItSawIsBlind) {
       w.scan(kRadarHealth, 0.1 * k, 15, 0, {});
     }
     EXPECT_EQ(w.count(event_kind::kSensorBlind), seen ? 1U : 0U);
+  }
+}
+
+TEST(SensorHealth, ASensorThatRepeatsItsLastFrameOnTheWayIsBlindUntilItsPictureChanges) {
+  HealthWatched w;
+  RadarReturns some{{RadarReturn{20}}};
+  for (int k = 0; k <= 12; ++k) w.see(kRadarHealth, 0.1 * k, some, 0, k);
+  EXPECT_EQ(w.count(event_kind::kSensorBlind), 1U);
+  some.returns[0].range = 21;
+  w.see(kRadarHealth, 1.3, some, 0, 13);
+  EXPECT_EQ(w.count(event_kind::kSensorBack), 1U);
+}
+
+TEST(SensorHealth, ARadarThatNoLongerSeesAPostThatTheLidarSeesIsBlindWithinTwoSeconds) {
+  for (const bool there : {true, false}) {
+    HealthWatched w;
+    w.sensors[kRadarHealth].params.fov = radians(15);
+    w.sensors[kRadarHealth].params.range_max = 100;
+    const LidarCloud post{{60}, {0}, {1}};
+    const auto scan = [&](double t, bool seen) {
+      RadarReturns some;
+      some.returns.resize(seen), w.see(kLidarHealth, t, seen || there ? post : LidarCloud());
+      w.see(kRadarHealth, t, some);
+      MeasurementScan radar;
+      radar.modality = Modality::kRadar;
+      radar.model = std::make_shared<const PositionModel>(PositionModel::Params());
+      radar.state.stamp = kStart + t;
+      if (seen) {
+        Measurement m;
+        m.position = Vector2(60, 0);
+        m.z = Vector3(60, 0, 0);
+        m.seen = 7;
+        radar.measurements.push_back(m);
+      }
+      w.health.addScan(kRadarHealth, radar, Hypothesis(), FilterModel(), nullptr);
+    };
+    for (int k = 0; k < 30; ++k) scan(0.1 * k, true);
+    for (int k = 30; k <= 50; ++k) scan(0.1 * k, false);
+    EXPECT_EQ(w.text().find("\"sensor\":\"RADAR\"") != std::string::npos, there) << w.text();
   }
 }
 

@@ -9,9 +9,11 @@
 #include "libperception/filter/state/Track.h"
 #include "libperception/measurement/models/ClutterMap.h"
 #include "libperception/pipeline/PipelineSetup.h"
-#include "libperception/pipeline/watches/ReturnRate.h"
-#include "libperception/pipeline/watches/SensorDoubt.h"
-#include "libperception/pipeline/watches/WindowDirt.h"
+#include "libperception/pipeline/health/FrozenPicture.h"
+#include "libperception/pipeline/health/ReturnRate.h"
+#include "libperception/pipeline/health/SensorDoubt.h"
+#include "libperception/pipeline/health/StandingReturns.h"
+#include "libperception/pipeline/health/WindowDirt.h"
 #include "libperception/scene/files/EventLog.h"
 
 namespace perception {
@@ -48,9 +50,12 @@ class SensorHealth {
     std::set<std::string> blind_parts;
     std::optional<Stamp> dirty_since;
     WindowDirt dirt;
+    FrozenPicture picture;
+    StandingReturns standing;  ///< of a lidar, where there are radars
     SensorDoubt doubt;
     Fault fault = Fault::kNone;
   };
+  void judgeFrozen(std::size_t sensor, Stamp stamp);
   void judgeWindow(std::size_t sensor, const LidarCloud& cloud, Stamp stamp);
   void judgeLoss(std::size_t sensor, Stamp stamp);
   void judge(std::size_t sensor, Stamp stamp);
@@ -63,6 +68,7 @@ class SensorHealth {
   const std::vector<PipelineSetup::Sensor>& sensors_;
   EventLog& events_;
   std::vector<State> states_;
+  bool radars_ = false;  ///< are in use
 };
 
 }  // namespace perception
