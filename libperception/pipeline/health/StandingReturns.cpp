@@ -23,12 +23,16 @@ void StandingReturns::add(const SensorFrame& frame, const LidarCloud& cloud) {
   cells_.reset();
   stamp_ = frame.stamp;
   T_ego_world_ = frame.ego.T_world_ego.inverse();
+  // The height above the ground is linear in a return's place: most returns are of the road.
+  const Vector3 up(-frame.ground.a, -frame.ground.b, 1);
+  const Vector3 slope = frame.T_ego_sensor.linear().transpose() * up;
+  const double offset = up.dot(frame.T_ego_sensor.translation()) - frame.ground.c;
   for (std::size_t k = 0; k < cloud.size(); ++k) {
-    const Vector3 p = frame.T_ego_sensor * Vector3(static_cast<double>(cloud.x[k]),
-                                                   static_cast<double>(cloud.y[k]),
-                                                   static_cast<double>(cloud.z[k]));
-    const double height = p.z() - frame.ground.heightAt(p.x(), p.y());
+    const Vector3 at(static_cast<double>(cloud.x[k]), static_cast<double>(cloud.y[k]),
+                     static_cast<double>(cloud.z[k]));
+    const double height = slope.dot(at) + offset;
     if (!(height >= kStandingFrom && height <= kStandingTo)) continue;
+    const Vector3 p = frame.T_ego_sensor * at;
     if (const auto cell = cellOf(p.x(), p.y())) cells_.set(*cell);
   }
 }
