@@ -4,7 +4,6 @@
 #include <cmath>
 #include <iterator>
 #include <utility>
-#include <vector>
 
 #include "libperception/filter/likelihood/LikelihoodRow.h"
 #include "libperception/filter/state/ClassFilterMotion.h"
@@ -132,19 +131,6 @@ void SensorDoubt::add(const MeasurementScan& scan, const Hypothesis& tracks,
   }
 }
 
-void SensorDoubt::addPlaces(const MeasurementScan& scan, const Hypothesis& tracks,
-                            const FilterModel& model, const FamiliarPlaces::View& view,
-                            const FamiliarPlaces::StillThere& stillThere) {
-  std::vector<Vector2> tracked;
-  for (const TrackHandle& track : tracks.tracks) {
-    if (!isWitness(*track, scan)) continue;
-    const ClassId c = track->likeliestClass();
-    const ClassFilter& filter = track->bank[track->filterOf(static_cast<std::size_t>(c))];
-    tracked.push_back(kinematicsOf(model.classes[c], filter).q.head<2>());
-  }
-  places_.add(scan, silent_ > 0, view, tracked, stillThere);
-}
-
 void SensorDoubt::forget(Stamp now) {
   if (last_) {
     const double keep = std::exp(-std::max(0.0, now - *last_) / kMemory);
@@ -177,8 +163,7 @@ void SensorDoubt::addBearing(Stamp stamp, std::uint64_t object, double error) {
 }
 
 double SensorDoubt::logSilence() const {
-  const double unclaimed = usual_ ? usual_->logSilence(static_cast<double>(silent_)) : 0;
-  return log_missed_ + std::min(unclaimed, places_.logMissed());
+  return log_missed_ + (usual_ ? usual_->logSilence(static_cast<double>(silent_)) : 0);
 }
 
 std::optional<double> SensorDoubt::offset(Stamp now) const {

@@ -10,7 +10,6 @@
 #include "libperception/filter/state/Track.h"
 #include "libperception/measurement/Measurement.h"
 #include "libperception/measurement/models/ClutterMap.h"
-#include "libperception/pipeline/health/FamiliarPlaces.h"
 
 namespace perception {
 
@@ -22,9 +21,6 @@ class SensorDoubt {
   /// A scan and the tracks after it; `seen_share`: what weather has left of P_D in its model.
   void add(const MeasurementScan& scan, const Hypothesis& tracks, const FilterModel& model,
            double seen_share);
-  /// That scan, of a radar: what stands in its view and is no object.
-  void addPlaces(const MeasurementScan& scan, const Hypothesis& tracks, const FilterModel& model,
-                 const FamiliarPlaces::View& view, const FamiliarPlaces::StillThere& stillThere);
   /// An object that the sensor should have seen in a scan by its tables, with probability
   /// `detection`.
   void addLook(double detection, bool seen);
@@ -70,7 +66,6 @@ class SensorDoubt {
   void forget(Stamp now);
 
   std::map<std::uint64_t, Looks> looks_;  ///< by track
-  FamiliarPlaces places_;
   double log_missed_ = 0, fouled_ = 0;
   double expected_ = 0, seen_ = 0;           ///< detections that are remembered
   std::optional<Stamp> last_;                ///< scan

@@ -24,9 +24,7 @@ std::string hardlyFor(double seconds) {
 }  // namespace
 
 SensorHealth::SensorHealth(const std::vector<PipelineSetup::Sensor>& sensors, EventLog& events)
-    : sensors_(sensors), events_(events), states_(sensors.size()) {
-  for (const auto& s : sensors) radars_ |= s.active && s.params.modality == Modality::kRadar;
-}
+    : sensors_(sensors), events_(events), states_(sensors.size()) {}
 
 void SensorHealth::addFrame(std::size_t sensor, const SensorFrame& frame, double fog) {
   State& state = states_[sensor];
@@ -34,7 +32,6 @@ void SensorHealth::addFrame(std::size_t sensor, const SensorFrame& frame, double
   state.picture.add(frame);
   if (const auto* cloud = std::get_if<LidarCloud>(&frame.data)) {
     if (fog < kFog) judgeWindow(sensor, *cloud, frame.stamp);
-    if (radars_) state.standing.add(frame, *cloud);
     state.returns.add(cloud->size(), frame.stamp);
     empty = state.returns.empty();
     if (const auto blind = state.returns.blindFor(); blind && state.fault != Fault::kBlind)
@@ -112,14 +109,6 @@ void SensorHealth::addScan(std::size_t sensor, const MeasurementScan& scan,
     state.doubt.hear(clutter);
   }
   state.doubt.add(scan, tracks, model, seen_share);
-  if (scan.modality == Modality::kRadar) {
-    const DetectionParams& params = sensors_[sensor].params;
-    const auto stillThere = [&](const Vector2& place) {
-      return std::any_of(states_.begin(), states_.end(),
-                         [&](const State& s) { return s.standing.at(place, scan.state.stamp); });
-    };
-    state.doubt.addPlaces(scan, tracks, model, {params.fov, params.range_max}, stillThere);
-  }
   judge(sensor, scan.state.stamp);
 }
 

@@ -12,7 +12,6 @@
 #include "libperception/pipeline/health/FrozenPicture.h"
 #include "libperception/pipeline/health/ReturnRate.h"
 #include "libperception/pipeline/health/SensorDoubt.h"
-#include "libperception/pipeline/health/StandingReturns.h"
 #include "libperception/pipeline/health/WindowDirt.h"
 #include "libperception/scene/files/EventLog.h"
 
@@ -51,7 +50,6 @@ class SensorHealth {
     std::optional<Stamp> dirty_since;
     WindowDirt dirt;
     FrozenPicture picture;
-    StandingReturns standing;  ///< of a lidar, where there are radars
     SensorDoubt doubt;
     Fault fault = Fault::kNone;
   };
@@ -68,7 +66,6 @@ class SensorHealth {
   const std::vector<PipelineSetup::Sensor>& sensors_;
   EventLog& events_;
   std::vector<State> states_;
-  bool radars_ = false;  ///< are in use
 };
 
 }  // namespace perception

@@ -253,35 +253,6 @@ TEST(SensorHealth, ASensorThatRepeatsItsLastFrameOnTheWayIsBlindUntilItsPictureC
   EXPECT_EQ(w.count(event_kind::kSensorBack), 1U);
 }
 
-TEST(SensorHealth, ARadarThatNoLongerSeesAPostThatTheLidarSeesIsBlindWithinTwoSeconds) {
-  for (const bool there : {true, false}) {
-    HealthWatched w;
-    w.sensors[kRadarHealth].params.fov = radians(15);
-    w.sensors[kRadarHealth].params.range_max = 100;
-    const LidarCloud post{{60}, {0}, {1}};
-    const auto scan = [&](double t, bool seen) {
-      RadarReturns some;
-      some.returns.resize(seen), w.see(kLidarHealth, t, seen || there ? post : LidarCloud());
-      w.see(kRadarHealth, t, some);
-      MeasurementScan radar;
-      radar.modality = Modality::kRadar;
-      radar.model = std::make_shared<const PositionModel>(PositionModel::Params());
-      radar.state.stamp = kStart + t;
-      if (seen) {
-        Measurement m;
-        m.position = Vector2(60, 0);
-        m.z = Vector3(60, 0, 0);
-        m.seen = 7;
-        radar.measurements.push_back(m);
-      }
-      w.health.addScan(kRadarHealth, radar, Hypothesis(), FilterModel(), nullptr);
-    };
-    for (int k = 0; k < 30; ++k) scan(0.1 * k, true);
-    for (int k = 30; k <= 50; ++k) scan(0.1 * k, false);
-    EXPECT_EQ(w.text().find("\"sensor\":\"RADAR\"") != std::string::npos, there) << w.text();
-  }
-}
-
 TEST(SensorHealth, AScannerOfAMergedLidarIsNamedByItself) {
   HealthWatched w;
   for (int k = 0; k < 30; ++k) {
