@@ -92,7 +92,7 @@ double visibilityOf(const Track& track, const MeasurementScan& scan, const Filte
 PairTerms::PairTerms(const Track& track, const ClassValues& detection, std::size_t measurement,
                      const ScanTerms& terms, PairLikelihood& pair)
     : track_(track), terms_(terms), m_(terms.scan.measurements[measurement]), pair_(pair) {
-  if (auto look = lookOf(track, m_, terms.scan, detection))
+  if (auto look = weighedLookOf(track, m_, terms.scan, detection, terms.model.classes))
     evidence_.emplace(track, std::move(*look), terms.scan, terms.model.params.class_epsilon);
   const std::size_t classes = track.bank.size();
   pair.measurement = measurement;

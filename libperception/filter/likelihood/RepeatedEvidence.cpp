@@ -21,6 +21,15 @@ const EvidenceSeen* seenBy(const Track& track, const std::string& sensor) {
 constexpr double kNearest = 0.1;    // [m] least range of a view
 constexpr double kLeastSaid = -12;  // under the likeliest class: a class never detected there
 
+/// Weight of the evidence for vehicles of many returns, and returns with half of it (views of
+/// vehicles by models that have not seen the recording: docs/decisions/lidar.md).
+constexpr double kVehicleWeight = 1.3, kFewReturns = 15;
+
+/// Whether a front end has judged all clusters of a scan to be no phantoms.
+bool isClearAir(const MeasurementScan& scan) {
+  return scan.verdicts && scan.verdicts->suspicious == 0 && scan.verdicts->phantoms.empty();
+}
+
 EvidenceView viewOf(const Track& track, const MeasurementScan& scan) {
   const auto c = static_cast<std::size_t>(track.likeliestClass());
   const Vector2 d =
@@ -56,6 +65,19 @@ std::optional<Look> lookOf(const Track& track, const Measurement& m, const Measu
   return look;
 }
 
+std::optional<Look> weighedLookOf(const Track& track, const Measurement& m,
+                                  const MeasurementScan& scan, const ClassValues& detection,
+                                  const ClassTable& classes) {
+  std::optional<Look> look = lookOf(track, m, scan, detection);
+  if (!look || !m.view || !isClearAir(scan)) return look;
+  const double returns = look->view.returns;
+  const double weight = std::max(1.0, kVehicleWeight * returns / (returns + kFewReturns));
+  for (std::size_t j = 0; j < look->said.size(); ++j)
+    if (classes[static_cast<ClassId>(j)].shape == ObjectShape::kVehicle && look->said[j] > 0)
+      look->said[j] *= weight;
+  return look;
+}
+
 std::optional<Look> missedLook(const Track& track, const MeasurementScan& scan,
                                const ClassValues& detection, double visible) {
   Look look;
@@ -88,7 +110,7 @@ std::optional<Look> lookAtBirth(const Track& track, const Measurement& m,
                                 const MeasurementScan& scan, const FilterModel& model) {
   ClassValues detection;
   if (scan.model->lookMemory()) detection = detectionAtBirth(m, scan, model);
-  return lookOf(track, m, scan, detection);
+  return weighedLookOf(track, m, scan, detection, model.classes);
 }
 
 RepeatedEvidence::RepeatedEvidence(const Track& track, Look look, const MeasurementScan& scan,

@@ -22,6 +22,11 @@ struct Look {
 /// with a lookMemory(), detection, label and score. Empty: the sensor has no memory.
 std::optional<Look> lookOf(const Track& track, const Measurement& m, const MeasurementScan& scan,
                            const ClassValues& detection);
+/// The same with the evidence of a shape for vehicles as strong as it is on recordings that the
+/// shape model has not seen (method.md 5.6).
+std::optional<Look> weighedLookOf(const Track& track, const Measurement& m,
+                                  const MeasurementScan& scan, const ClassValues& detection,
+                                  const ClassTable& classes);
 /// Of a missed detection; `visible`: share of the object that nothing hides. Empty also where that
 /// is nothing.
 std::optional<Look> missedLook(const Track& track, const MeasurementScan& scan,

@@ -177,7 +177,8 @@ Track hitTrack(Track predicted, const TrackLikelihoods& row, const PairLikelihoo
                const MeasurementScan& scan, std::uint64_t scan_index, const FilterModel& model) {
   const Measurement& m = scan.measurements[pair.measurement];
   Track track = std::move(predicted);
-  const std::optional<Look> look = lookOf(track, m, scan, row.detection_by_class);
+  const std::optional<Look> look =
+      weighedLookOf(track, m, scan, row.detection_by_class, model.classes);
   track.history = extendHistory(track.history, scan_index, pair.measurement);
   track.existence = model.params.existence_max;
   track.stands = pair.stands;
@@ -287,7 +288,11 @@ Track newTrack(const BirthLikelihood& births, std::size_t measurement, const Mea
   if (m.heading) updateBodyHeading(*m.heading, model.params, track);
   track.base_z = {scan.state.ego.T_world_ego.translation().z(), 1};
   if (m.base_z) scalarUpdate(*m.base_z, track.base_z);
-  if (const auto look = lookAtBirth(track, m, scan, model)) rememberEvidence(*look, scan, track);
+  if (const auto look = lookAtBirth(track, m, scan, model)) {
+    rememberEvidence(*look, scan, track);
+    for (std::size_t j = 0; m.view && j < m.log_class.size(); ++j)
+      if (look->said[j] > m.log_class[j]) track.log_class[j] += look->said[j] - m.log_class[j];
+  }
   startSizes(model, track);
   updateSizes(m, axisOf(model, track), model, track);
   clampClasses(model.params.class_epsilon, track.log_class);

@@ -133,6 +133,54 @@ TEST(RepeatedEvidence, WithoutAViewOrAMemoryNothingIsKept) {
   check(f.seen(0, kAhead));
 }
 
+/// The first class is a vehicle; a scan of clear air in which a shape of so many returns says
+/// `said`.
+struct VehicleInClearAir : RepeatFixture {
+  VehicleInClearAir() { model.classes.classes[0].shape = ObjectShape::kVehicle; }
+  MeasurementScan of(double returns, std::vector<double> said) const {
+    MeasurementScan scan = seen(0, EvidenceView{0.1, 3, returns}, std::move(said));
+    scan.verdicts.emplace();
+    return scan;
+  }
+  ClassValues weighed(const MeasurementScan& scan) const {
+    return weighedLookOf({}, scan.measurements[0], scan, {}, model.classes)->said;
+  }
+};
+
+TEST(RepeatedEvidence, AShapeOfManyReturnsTellsVehiclesStrongerThanItsModelSays) {
+  const VehicleInClearAir f;
+  const ClassValues vehicle = f.weighed(f.of(100, {1.5, -0.5}));
+  EXPECT_NEAR(vehicle[0], 1.5 * 1.3 * 100 / 115, 1e-12);
+  EXPECT_EQ(vehicle[1], -0.5);
+  EXPECT_EQ(f.weighed(f.of(10, {1.5, -0.5}))[0], 1.5) << "few returns say what they say";
+  EXPECT_EQ(f.weighed(f.of(100, {-1.5, 0.5}))[0], -1.5) << "so does what speaks against it";
+  EXPECT_EQ(f.weighed(f.of(100, {-1.5, 0.5}))[1], 0.5) << "so does what speaks for a thing";
+}
+
+TEST(RepeatedEvidence, AmongPhantomsAndByOtherSensorsVehiclesAreNotStronger) {
+  const VehicleInClearAir f;
+  MeasurementScan scan = f.of(100, {1.5, -0.5});
+  scan.verdicts->suspicious = 1;
+  EXPECT_EQ(f.weighed(scan)[0], 1.5);
+  scan.verdicts->suspicious = 0, scan.verdicts->phantoms.emplace_back();
+  EXPECT_EQ(f.weighed(scan)[0], 1.5);
+  scan.verdicts.reset();
+  EXPECT_EQ(f.weighed(scan)[0], 1.5);
+}
+
+TEST(RepeatedEvidence, BirthsAndHitsTellVehiclesAlike) {
+  const VehicleInClearAir f;
+  const MeasurementScan scan = f.of(100, {1.5, -0.5});
+  const double said = 1.5 * 1.3 * 100 / 115 + 0.5;
+  Track track = f.born(scan);
+  EXPECT_NEAR(odds(track), std::log(0.6 / 0.4) + said, 1e-9);
+  MeasurementScan later = f.of(100, {1.5, -0.5});
+  later.state.stamp = later.state.stamp + 0.1;
+  track = f.hit(track, later);
+  EXPECT_NEAR(odds(track), std::log(0.6 / 0.4) + said * f.memory.looks(track.evidence.at(0).views),
+              1e-6);
+}
+
 // In the update ---------------------------------------------------------------------------------
 
 TEST(RepeatedEvidence, IdenticalEvidenceConverges) {
