@@ -106,13 +106,6 @@ ClassValues detectionAtBirth(const Measurement& m, const MeasurementScan& scan,
   return detection;
 }
 
-std::optional<Look> lookAtBirth(const Track& track, const Measurement& m,
-                                const MeasurementScan& scan, const FilterModel& model) {
-  ClassValues detection;
-  if (scan.model->lookMemory()) detection = detectionAtBirth(m, scan, model);
-  return weighedLookOf(track, m, scan, detection, model.classes);
-}
-
 RepeatedEvidence::RepeatedEvidence(const Track& track, Look look, const MeasurementScan& scan,
                                    double epsilon)
     : look_(std::move(look)) {
@@ -165,6 +158,17 @@ void rememberEvidence(const Look& look, const MeasurementScan& scan, Track& trac
   } else {
     *seen = std::move(now);
   }
+}
+
+void rememberBirth(const Measurement& m, const MeasurementScan& scan, const FilterModel& model,
+                   Track& track) {
+  ClassValues detection;
+  if (scan.model->lookMemory()) detection = detectionAtBirth(m, scan, model);
+  const auto look = weighedLookOf(track, m, scan, detection, model.classes);
+  if (!look) return;
+  rememberEvidence(*look, scan, track);
+  for (std::size_t j = 0; m.view && j < m.log_class.size(); ++j)
+    if (look->said[j] > m.log_class[j]) track.log_class[j] += look->said[j] - m.log_class[j];
 }
 
 }  // namespace perception

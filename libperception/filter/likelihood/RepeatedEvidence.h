@@ -34,8 +34,6 @@ std::optional<Look> missedLook(const Track& track, const MeasurementScan& scan,
 /// P_D by class where a measurement would start an object, nothing hidden; 0: it cannot.
 ClassValues detectionAtBirth(const Measurement& m, const MeasurementScan& scan,
                              const FilterModel& model);
-std::optional<Look> lookAtBirth(const Track& track, const Measurement& m,
-                                const MeasurementScan& scan, const FilterModel& model);
 
 /// What a look adds to the evidence of a track's class by a sensor whose errors repeat (method.md
 /// 5.6): the evidence of all looks is their mean times the number of independent ones that they are
@@ -66,5 +64,9 @@ class RepeatedEvidence {
 
 /// Stores what was said of a track.
 void rememberEvidence(const Look& look, const MeasurementScan& scan, Track& track);
+/// Stores the look that a track is born from, whose log_class has what `m` said, and adds what the
+/// look says more.
+void rememberBirth(const Measurement& m, const MeasurementScan& scan, const FilterModel& model,
+                   Track& track);
 
 }  // namespace perception

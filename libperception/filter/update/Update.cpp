@@ -288,11 +288,7 @@ Track newTrack(const BirthLikelihood& births, std::size_t measurement, const Mea
   if (m.heading) updateBodyHeading(*m.heading, model.params, track);
   track.base_z = {scan.state.ego.T_world_ego.translation().z(), 1};
   if (m.base_z) scalarUpdate(*m.base_z, track.base_z);
-  if (const auto look = lookAtBirth(track, m, scan, model)) {
-    rememberEvidence(*look, scan, track);
-    for (std::size_t j = 0; m.view && j < m.log_class.size(); ++j)
-      if (look->said[j] > m.log_class[j]) track.log_class[j] += look->said[j] - m.log_class[j];
-  }
+  rememberBirth(m, scan, model, track);
   startSizes(model, track);
   updateSizes(m, axisOf(model, track), model, track);
   clampClasses(model.params.class_epsilon, track.log_class);
