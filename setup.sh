@@ -90,8 +90,8 @@ fuzz_packages=(
 bench_packages=(
   python3-numpy python3-scipy  # scores and errors of tracking on KITTI: tests/bench/kitti
   libpcl-dev             # ground by RANSAC, clusters by a tree of points: peers of the lidar front end
-  libopencv-contrib-dev  # cv::dpm, peer of the part models
   libnanoflann-dev       # the same by region growing; kd-tree of snow filters, peers of the trust in returns
+  libopencv-contrib-dev  # cv::dpm, peer of the part models
 )
 
 say() { printf '\n== %s\n' "$*"; }

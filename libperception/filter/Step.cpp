@@ -252,7 +252,6 @@ MapHypothesis mapHypothesis(const Posterior& posterior) {
     std::size_t first;
     double most;     // of its slots' log weights
     double sum = 0;  // of its slots' weights, as shares of the largest one
-    double log_weight = 0;
   };
   const std::vector<double>& weights = posterior.log_weights;
   IndexMap numbers(posterior.hypotheses.size());
@@ -269,18 +268,15 @@ MapHypothesis mapHypothesis(const Posterior& posterior) {
     Group& group = groups[of_slot[i]];
     group.sum += group.most == kMinusInfinity ? 1 : std::exp(weights[i] - group.most);
   }
-  std::vector<double> of_groups;
-  for (Group& group : groups)
-    of_groups.push_back(group.log_weight = group.most + std::log(group.sum));
+  std::vector<double> of_groups;  // log weights
+  for (const Group& group : groups) of_groups.push_back(group.most + std::log(group.sum));
   // Ties go to the earlier slot.
-  const auto best =
-      std::max_element(groups.begin(), groups.end(),
-                       [](const Group& a, const Group& b) { return a.log_weight < b.log_weight; });
+  const auto best = std::max_element(of_groups.begin(), of_groups.end());
   MapHypothesis out;
   out.distinct = groups.size();
-  if (best == groups.end()) return out;
-  out.slot = best->first;
-  out.probability = std::exp(best->log_weight - logSumExp(of_groups));
+  if (best == of_groups.end()) return out;
+  out.slot = groups[static_cast<std::size_t>(best - of_groups.begin())].first;
+  out.probability = std::exp(*best - logSumExp(of_groups));
   return out;
 }
 

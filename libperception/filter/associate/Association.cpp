@@ -70,7 +70,7 @@ std::vector<std::vector<std::uint32_t>> drawn(const Choices& choices,
   bool around = false;
   for (std::size_t i = 0; i < slots.size(); ++i) {
     double quantile = begin + static_cast<double>(i) * step;
-    if (quantile >= 1) {
+    if (quantile >= 1) {  // once around the circle: from the first cause on
       if (!around) chosen = 0, end = std::exp(choices.log_odds[0] - choices.total);
       around = true;
       quantile -= 1;

@@ -9,19 +9,6 @@ namespace {
 
 constexpr double kStep = 0.1;  // [s]
 
-/// A walk at constant speed along a polyline, with a random walk of `jitter` [m/sqrt(s)] on top.
-std::vector<Vector2> walk(const Vector2& from, const Vector2& to, double speed, double duration,
-                          double jitter, Rng& rng) {
-  std::vector<Vector2> path;
-  const double length = (to - from).norm();
-  Vector2 wander = Vector2::Zero();
-  for (int i = 0; i <= static_cast<int>(duration / kStep + 0.5); ++i) {
-    wander += jitter * std::sqrt(kStep) * Vector2(rng.normal(), rng.normal());
-    path.push_back(from + (to - from) * std::min(1.0, i * kStep * speed / length) + wander);
-  }
-  return path;
-}
-
 /// A drive along one axis.
 std::vector<Vector2> drive(const Vector2& from, const Vector2& direction, double speed,
                            double duration) {
@@ -115,6 +102,18 @@ MeasurementScan oneScan(const EncounterScene& scene, std::size_t instant,
 
 }  // namespace
 
+std::vector<Vector2> encounterWalk(const Vector2& from, const Vector2& to, double speed,
+                                   double duration, double jitter, Rng& rng) {
+  std::vector<Vector2> path;
+  const double length = (to - from).norm();
+  Vector2 wander = Vector2::Zero();
+  for (int i = 0; i <= static_cast<int>(duration / kStep + 0.5); ++i) {
+    wander += jitter * std::sqrt(kStep) * Vector2(rng.normal(), rng.normal());
+    path.push_back(from + (to - from) * std::min(1.0, i * kStep * speed / length) + wander);
+  }
+  return path;
+}
+
 EncounterScene busyStreet(Rng& rng) {
   constexpr double kDuration = 8;  // [s]
   const auto instants = static_cast<std::size_t>(kDuration / kStep);
@@ -126,7 +125,7 @@ EncounterScene busyStreet(Rng& rng) {
   for (int i = 0; i < 6; ++i) {
     const double x = rng.uniform(4, 18), side = rng.uniform() < 0.5 ? 1 : -1;
     const Vector2 to(x + rng.normal(0, 3), 18 * side);
-    auto path = walk({x, -18 * side}, to, rng.uniform(1, 1.7), kDuration, 0.05, rng);
+    auto path = encounterWalk({x, -18 * side}, to, rng.uniform(1, 1.7), kDuration, 0.05, rng);
     path.resize(instants);
     scene.objects.push_back({false, std::move(path)});
   }

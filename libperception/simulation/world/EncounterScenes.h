@@ -22,6 +22,11 @@ struct EncounterScene {
   std::size_t instants() const { return objects.empty() ? 0 : objects.front().path.size(); }
 };
 
+/// A walk of `duration` [s] from one place to another at a constant speed [m/s], with a random walk
+/// of `jitter` [m/sqrt(s)] on top, at 10 Hz.
+std::vector<Vector2> encounterWalk(const Vector2& from, const Vector2& to, double speed,
+                                   double duration, double jitter, Rng& rng);
+
 /// A busy street of 8 s: eight parked cars, six pedestrians, three passing cars.
 EncounterScene busyStreet(Rng& rng);
 

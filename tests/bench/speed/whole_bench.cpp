@@ -14,7 +14,9 @@
 #include <tbb/global_control.h>
 
 #include <Eigen/Dense>
+#include <algorithm>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 

@@ -12,19 +12,6 @@ namespace encounters {
 
 constexpr double kStep = 0.1;  // [s]
 
-/// A walk at constant speed along a polyline, with a random walk of `jitter` [m/sqrt(s)] on top.
-inline std::vector<Vector2> walk(const Vector2& from, const Vector2& to, double speed,
-                                 double duration, double jitter, Rng& rng) {
-  std::vector<Vector2> path;
-  const double length = (to - from).norm();
-  Vector2 wander = Vector2::Zero();
-  for (int i = 0; i <= static_cast<int>(duration / kStep + 0.5); ++i) {
-    wander += jitter * std::sqrt(kStep) * Vector2(rng.normal(), rng.normal());
-    path.push_back(from + (to - from) * std::min(1.0, i * kStep * speed / length) + wander);
-  }
-  return path;
-}
-
 /// A drive along one axis: v(t) integrated from the start.
 template <class Speed>
 std::vector<Vector2> drive(const Vector2& from, const Vector2& direction, double duration,
@@ -91,14 +78,14 @@ inline EncounterScene encounterScene(const std::string& name, Rng& rng) {
     const double d = name.size() > 1 ? numberAfter(name, 1) : 1.0;
     for (const double side : {1.0, -1.0}) {
       const double x = 9 + side * d / 2;
-      scene.objects.push_back(
-          {false, walk({x, -8 * side}, {x, 8 * side}, 1.35 + rng.normal(0, 0.1), 12, 0.03, rng)});
+      scene.objects.push_back({false, encounterWalk({x, -8 * side}, {x, 8 * side},
+                                                    1.35 + rng.normal(0, 0.1), 12, 0.03, rng)});
     }
   } else if (kind == 'D') {
     double side = 1;
     for (const double x : {8.0, 8.5, 9.0, 9.6}) {
-      scene.objects.push_back(
-          {false, walk({x, -8 * side}, {x, 8 * side}, 1.3 + rng.normal(0, 0.15), 12, 0.03, rng)});
+      scene.objects.push_back({false, encounterWalk({x, -8 * side}, {x, 8 * side},
+                                                    1.3 + rng.normal(0, 0.15), 12, 0.03, rng)});
       side = -side;
     }
     for (const double y : {3.0, -3.0})
