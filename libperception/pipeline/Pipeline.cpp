@@ -232,7 +232,7 @@ void Pipeline::processFrame(std::size_t sensor, SensorFrame& frame) {
     if (setup_.sensors[sensor].params.modality == Modality::kLidar)
       frame.causes.wakes = wakes_.at(frame.stamp);
     MeasurementScan scan = scan_maker_.measure(sensor, frame);
-    const double share = conditions_.apply(sensor, scan, health_.seenShare(sensor));
+    const double share = conditions_.apply(sensor, scan, health_.count(sensor));
     wakes_.apply(sensor, scan);
     watch_.addFrame(sensor, stamp, &scan);
     for (PipelineObserver* o : observers_) o->onFrame(frame), o->onScan(scan);

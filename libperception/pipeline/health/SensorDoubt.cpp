@@ -23,8 +23,8 @@ constexpr double kLeastShare = 0.7;  // of the object that is open
 constexpr double kSameObject = 3;    // [m] from a track to its measurement
 constexpr double kRadarSpeed = 2;    // [m/s] that a radar tells from the ground
 constexpr double kExists = 0.8;
-// Before any look, in bad weather: share of P_D, the detections that it is worth; least share.
-constexpr double kBadShare = 0.6, kBadLooks = 4, kLeastSeen = 0.1;
+// The detections that the share of P_D before any look is worth; least share.
+constexpr double kLooksBefore = 4, kLeastSeen = 0.1;
 constexpr double kMemory = 10;  // [s] of looks
 // An object that this sensor saw so often is a witness whatever it is; its P_D is that of the
 // tables times hits per expected hit, with so many more looks in vain.
@@ -123,7 +123,7 @@ void SensorDoubt::add(const MeasurementScan& scan, const Hypothesis& tracks,
       addMiss(std::min(std::max(of_tables ? table : 0, familiar), kMostDetection));
     if (!of_tables) continue;
     addLook(std::min(table, kMostDetection), seen);
-    expected_ += std::min(table, kMostDetection), seen_ += seen;
+    count_.expected += std::min(table, kMostDetection), count_.seen += seen;
     const auto place = seen ? nearestTo(object.q.head<2>(), scan) : std::nullopt;
     if (!place) continue;
     if (const auto error = bearingError(scan.measurements[*place], object, filter.extent, scan))
@@ -134,7 +134,7 @@ void SensorDoubt::add(const MeasurementScan& scan, const Hypothesis& tracks,
 void SensorDoubt::forget(Stamp now) {
   if (last_) {
     const double keep = std::exp(-std::max(0.0, now - *last_) / kMemory);
-    expected_ *= keep, seen_ *= keep;
+    count_.expected *= keep, count_.seen *= keep;
     for (auto& [track, looks] : looks_) looks.expected *= keep, looks.hits *= keep;
   }
   last_ = now;
@@ -152,9 +152,8 @@ void SensorDoubt::addMiss(double detection) {
   log_missed_ += kMissExponent * std::log1p(-detection);
 }
 
-double SensorDoubt::seenShare() const {
-  const double share = (kBadShare * kBadLooks + seen_) / (kBadLooks + expected_);
-  return std::clamp(share, kLeastSeen, 1.0);
+double DetectionCount::share(double before) const {
+  return std::clamp((before * kLooksBefore + seen) / (kLooksBefore + expected), kLeastSeen, 1.0);
 }
 
 void SensorDoubt::addBearing(Stamp stamp, std::uint64_t object, double error) {

@@ -13,6 +13,16 @@
 
 namespace perception {
 
+/// Detections of a sensor within the last ten seconds.
+struct DetectionCount {
+  double expected = 0;  ///< by its tables, of objects that other sensors saw
+  double seen = 0;      ///< of these
+
+  /// (0, 1] share of P_D that the sensor has. `before`: what it was worth before any look, as much
+  /// as four looks (method.md 4.8).
+  double share(double before) const;
+};
+
 /// Evidence that a sensor other than a lidar is faulty: it misses objects that other sensors see in
 /// its view and that it should see by its tables or saw until now; its usual false measurements
 /// stay away; its bearings all err to the same side (method.md 9.10).
@@ -41,9 +51,7 @@ class SensorDoubt {
   /// Log probability that a healthy sensor has been silent since its last measurement. It is the
   /// log-likelihood ratio against a blind sensor, whose silence is certain.
   double logSilence() const;
-  /// (0, 1] share of the expected detections that arrived in the last ten seconds, down to the
-  /// share of a sensor in bad weather (method.md 4.8).
-  double seenShare() const;
+  const DetectionCount& count() const { return count_; }
   /// Log-likelihood ratio that the sensor misses more than half of what it should see, since the
   /// instant at which this is most likely.
   double fouled() const { return fouled_; }
@@ -67,7 +75,7 @@ class SensorDoubt {
 
   std::map<std::uint64_t, Looks> looks_;  ///< by track
   double log_missed_ = 0, fouled_ = 0;
-  double expected_ = 0, seen_ = 0;           ///< detections that are remembered
+  DetectionCount count_;
   std::optional<Stamp> last_;                ///< scan
   std::size_t silent_ = 0;                   ///< scans in a row
   std::shared_ptr<const ClutterMap> usual_;  ///< before the silence

@@ -34,8 +34,7 @@ class SensorHealth {
   void addScan(std::size_t sensor, const MeasurementScan& scan, const Hypothesis& tracks,
                const FilterModel& model, const std::shared_ptr<const ClutterMap>& clutter,
                double seen_share = 1);
-  /// SensorDoubt::seenShare()
-  double seenShare(std::size_t sensor) const { return states_[sensor].doubt.seenShare(); }
+  const DetectionCount& count(std::size_t sensor) const { return states_[sensor].doubt.count(); }
   /// After a clock jump: forgets what was seen.
   void restart();
 

@@ -16,6 +16,7 @@ namespace {
 constexpr double kLag = 1.5;  // [s]
 constexpr std::size_t kLaterScans = 4;
 constexpr double kClearFrom = 0.5;  // probability of clear air
+constexpr double kBadShare = 0.6;   // of P_D that a camera has in bad weather. Assumed
 
 /// P(exists) of the objects that were born in scan number `index`, by measurement.
 std::vector<double> bornIn(std::uint64_t index, std::size_t measurements,
@@ -40,14 +41,22 @@ ConditionWatch::ConditionWatch(const std::vector<PipelineSetup::Sensor>& sensors
     : sensors_(sensors), weather_(weather), states_(sensors.size()) {
   for (std::size_t k = 0; k < sensors.size(); ++k)
     states_[k].map = std::make_shared<const ClutterMap>(sensors[k].params);
+  const auto has = [&](Modality modality) {
+    return std::any_of(sensors.begin(), sensors.end(), [&](const PipelineSetup::Sensor& s) {
+      return s.active && s.params.modality == modality;
+    });
+  };
+  weather_untold_ = !has(Modality::kLidar) && has(Modality::kRadar);
 }
 
-double ConditionWatch::apply(std::size_t sensor, MeasurementScan& scan, double seen_share) const {
+double ConditionWatch::apply(std::size_t sensor, MeasurementScan& scan,
+                             const DetectionCount& count) const {
   SensorConditions conditions;
   if (sensors_[sensor].params.clutter == DetectionParams::Clutter::kLearnt)
     conditions.clutter = states_[sensor].map;
-  if (sensors_[sensor].params.modality == Modality::kCamera && weather_.clear() < kClearFrom)
-    conditions.seen_share = seen_share;
+  if (sensors_[sensor].params.modality == Modality::kCamera &&
+      (weather_untold_ || weather_.clear() < kClearFrom))
+    conditions.seen_share = count.share(kBadShare);
   const double used = conditions.seen_share;
   if (!scan.model || (!conditions.clutter && used >= 1)) return 1;
   scan.model = std::make_shared<const ConditionedModel>(scan.model, std::move(conditions));

@@ -8,6 +8,7 @@
 #include "libperception/filter/CRbpfTracker.h"
 #include "libperception/measurement/models/ConditionedModel.h"
 #include "libperception/pipeline/PipelineSetup.h"
+#include "libperception/pipeline/health/SensorDoubt.h"
 #include "libperception/pipeline/phantoms/WeatherWatch.h"
 
 namespace perception {
@@ -19,9 +20,10 @@ class ConditionWatch {
  public:
   ConditionWatch(const std::vector<PipelineSetup::Sensor>& sensors, const WeatherWatch& weather);
 
-  /// Puts the present conditions into the model of a scan that goes into the filter. `seen_share`:
-  /// SensorHealth::seenShare(), for cameras in bad weather. Returns the share that was used.
-  double apply(std::size_t sensor, MeasurementScan& scan, double seen_share = 1) const;
+  /// Puts the present conditions into the model of a scan that goes into the filter. `count`: of
+  /// this sensor, for cameras while the air is not known to be clear (method.md 4.8). Returns the
+  /// share of P_D that was used.
+  double apply(std::size_t sensor, MeasurementScan& scan, const DetectionCount& count = {}) const;
   /// The scan after that, processed by the filter as its scan number `index`. Which of its
   /// measurements were clutter is known half a second later: those that belonged to no object and
   /// started none that was seen again (method.md 5.18).
@@ -53,6 +55,8 @@ class ConditionWatch {
   const std::vector<PipelineSetup::Sensor>& sensors_;
   const WeatherWatch& weather_;
   std::vector<State> states_;
+  /// Whether no lidar tells the weather, but radars could show what the cameras miss.
+  bool weather_untold_ = false;
 };
 
 }  // namespace perception

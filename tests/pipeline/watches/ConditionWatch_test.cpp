@@ -94,5 +94,38 @@ TEST(ConditionWatch, LearnedClutterIsInTheModelOfTheScan) {
   EXPECT_LT(last.model->logClutterDensity(m, last.state), std::log(10 / (kPi * 40 * 40)));
 }
 
+/// Share of P_D that a camera's scan goes into the filter with, of eight of twenty objects seen.
+double shareOfCamera(std::vector<Modality> others, bool rain_told = false) {
+  std::vector<PipelineSetup::Sensor> sensors;
+  others.insert(others.begin(), Modality::kCamera);
+  for (const Modality modality : others) {
+    PipelineSetup::Sensor sensor;
+    sensor.active = true, sensor.params.modality = modality;
+    sensors.push_back(sensor);
+  }
+  EventLog events;
+  WeatherWatch weather{events};
+  AirCensus rain;
+  for (auto& sector : rain.sectors)
+    sector.returns = 4000, sector.level = 400, sector.lone[0] = 0.003 * sector.returns;
+  rain.ground[5] = 48000, rain.upright[30] = 48000;
+  for (int k = 0; rain_told && k < 40; ++k)
+    weather.add("LIDAR", Stamp::fromSeconds(1000 + 0.1 * k), rain, {});
+  MeasurementScan scan =
+      positionScan(std::make_shared<const PositionModel>(linearSensor()), 0, {{3, 5, 1}});
+  return ConditionWatch(sensors, weather).apply(0, scan, DetectionCount{20, 8});
+}
+
+TEST(ConditionWatch, CameraWithRadarsHasTheShareOfDetectionsThatItShows) {
+  EXPECT_NEAR(shareOfCamera({Modality::kRadar}), (0.6 * 4 + 8) / (4 + 20), 1e-12);
+}
+
+TEST(ConditionWatch, CameraKeepsItsDetectionProbabilityWhereALidarSeesClearAir) {
+  EXPECT_EQ(shareOfCamera({Modality::kRadar, Modality::kLidar}), 1);
+  EXPECT_LT(shareOfCamera({Modality::kRadar, Modality::kLidar}, true), 0.5);
+}
+
+TEST(ConditionWatch, CameraAloneKeepsItsDetectionProbability) { EXPECT_EQ(shareOfCamera({}), 1); }
+
 }  // namespace
 }  // namespace perception
