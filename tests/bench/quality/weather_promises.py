@@ -178,9 +178,11 @@ def fog(reports):
 
 
 def town(reports):
-    share = [r["closest"]["all"]["heading_reversed"] for path in reports for r in report_of(path)]
-    return (f"headings reversed {', '.join(f'{s:.3f}' for s in share)} with C+L+R, L+R (simulated)", ".03",
-            max(share) <= 0.03)
+    runs = [r["closest"]["all"] for path in reports for r in report_of(path)]
+    of_all, known, of_known = (", ".join(f"{r[key]:.3f}" for r in runs) for key in
+                               ("heading_reversed", "heading_front_known", "heading_front_known_reversed"))
+    return (f"headings reversed {of_all} of all, {of_known} of those whose front the program knows ({known}), with C+L+R, L+R "
+            "(simulated)", ".03 of all", max(r["heading_reversed"] for r in runs) <= 0.03)
 
 
 def street(reports):
