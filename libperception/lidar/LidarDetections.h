@@ -20,6 +20,8 @@ struct JudgedCluster {
   std::array<double, kShapes> evidence{};  ///< ClusterClassifier::evidence()
   bool alone = false;                      ///< no other return within 0.5 m
   double phantom = 0;                      ///< [0, 1] P(phantom)
+  double looks_phantom = 0;                ///< ClusterClassifier::phantomEvidence()
+  double cause = 0;                        ///< [0, 1] that something makes phantoms there
 };
 
 /// Detections of one scan, in the ego frame: for the tracker, for pictures and for the safety grid.

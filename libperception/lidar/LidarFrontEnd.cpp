@@ -119,9 +119,13 @@ void describeSolid(const SensorFrame& frame, const LidarCloud& cloud, const Obst
   for (std::size_t k = 0; k < slab.size(); ++k) found.solid[slab[k]] = shares[k];
 }
 
+/// Of phantoms at a place, from which on the tracker hears of them: a missed object would else be
+/// taken for a phantom in the clearest air (assumed).
+constexpr double kLikelyCause = 0.5;
+
 /// What may make phantoms, by place in the ego frame.
 CausesAt causesOf(const SensorFrame& frame) {
-  if (!frame.causes.any()) return {};
+  if (!frame.causes.any() && frame.causes.spray <= 0) return {};
   return [&frame](const Vector2& place) {
     const Vector3 world = frame.ego.T_world_ego * Vector3(place.x(), place.y(), 0);
     return frame.causes.at(world.head<2>(), frame.stamp);
@@ -236,6 +240,9 @@ void LidarFrontEnd::fill(const SensorFrame& frame, MeasurementScan& scan) const 
     describeCluster(found.x, found.y, found.above, outline);
     if (!reached(outline.hull)) return;
     Measurement& m = judged[k].emplace(measurementOf(context, cluster, std::move(outline)));
+    if (cluster.cause > kLikelyCause)
+      m.phantom = PhantomLook{cluster.cause, std::min(cluster.phantom, cluster.cause),
+                              cluster.looks_phantom};
     m.log_class.reserve(classes_.classes.size());
     for (const ObjectClass& c : classes_.classes)
       m.log_class.push_back(cluster.evidence[static_cast<std::size_t>(c.shape)]);

@@ -52,6 +52,13 @@ struct MeasuredHeading {
   double flip_persistence = 0;
 };
 
+/// What the shape of a cluster says of whether it is a phantom (method.md 5.19).
+struct PhantomLook {
+  double cause = 0;        ///< [0, 1] P(something makes phantoms at its place), above 0
+  double probability = 0;  ///< [0, cause] P(phantom) by its shape and this cause
+  double evidence = 0;     ///< log p(shape | phantom) / p(shape | anything else)
+};
+
 /// z with covariance R under the scan's MeasurementModel, and the other attributes of the
 /// detection.
 struct Measurement {
@@ -64,6 +71,7 @@ struct Measurement {
   /// per label. Empty: the model's label table and `log_score_ratio`.
   std::vector<double> log_class;
   double log_clutter = 0;
+  std::optional<PhantomLook> phantom;    ///< empty: no cluster told by its shape, or no cause
   std::optional<EvidenceView> view;      ///< of `log_class`; empty: its errors are independent
   Vector2 position = Vector2::Zero();    ///< [m] approximate position of the object, world: for
                                          ///< gating by distance and for drawings

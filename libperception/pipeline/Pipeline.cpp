@@ -229,8 +229,10 @@ void Pipeline::processFrame(std::size_t sensor, SensorFrame& frame) {
   if (setup_.sensors[sensor].active) {
     health_.addFrame(sensor, frame, weather_.fog());
     inputs_.apply(frame);
-    if (setup_.sensors[sensor].params.modality == Modality::kLidar)
-      frame.causes.wakes = wakes_.at(frame.stamp);
+    if (setup_.sensors[sensor].params.modality == Modality::kLidar) {
+      frame.causes.wakes = wakes_.at(stamp);
+      frame.causes.spray = wakes_.spray(sensor, stamp);
+    }
     MeasurementScan scan = scan_maker_.measure(sensor, frame);
     const double share = conditions_.apply(sensor, scan, health_.count(sensor));
     wakes_.apply(sensor, scan);

@@ -243,9 +243,10 @@ BirthLikelihood birthLikelihood(std::size_t k, const ScanTerms& terms) {
   if (model.params.shape_prior) weighShape(m, scan.state, model, result);
   result.log_new = logAddExp(result.log_birth, result.log_clutter);
   double log_cause = result.log_birth;
-  const double over_clutter = phantomDensity(m.position, scan);
-  if (over_clutter > 0) {
-    const double log_phantom = result.log_clutter + std::log(over_clutter);
+  const double over_clutter = phantomDensity(m.position, scan), over_birth = phantomOdds(m);
+  if (over_clutter > 0 || over_birth > 0) {
+    const double log_phantom = std::max(result.log_clutter + std::log(over_clutter),
+                                        result.log_birth + std::log(over_birth));
     log_cause = logAddExp(result.log_birth, log_phantom);
     result.log_new = logAddExp(result.log_new, log_phantom);
     if (log_cause > kMinusInfinity) result.phantom = std::exp(log_phantom - log_cause);

@@ -26,7 +26,7 @@ struct PairLikelihood {
 /// Likelihoods of one predicted track for all gated measurements of a scan.
 struct TrackLikelihoods {
   double detection = 0;  ///< P_D = sum_j p(class j) P_D(class j)
-  double seen = 0;       ///< P(detected), as an object or as a phantom in a wake
+  double seen = 0;       ///< P(detected), as an object or as a phantom
   ClassValues detection_by_class;
   double visible = 1;                       ///< share of the object's directions that are open
   bool in_view = false;                     ///< P_D of some class is positive, occlusion aside
@@ -39,7 +39,7 @@ struct BirthLikelihood {
   double log_birth = 0, log_clutter = 0;  ///< log densities per scan and unit of the axes seen
   double log_new = 0;                     ///< log(birth + phantom + clutter)
   double existence = 0;                   ///< (birth + phantom) / new
-  double phantom = 0;                     ///< phantom in a wake / (birth + phantom)
+  double phantom = 0;                     ///< phantom / (birth + phantom)
   std::vector<double> log_class;          ///< class posterior of the newborn
 };
 

@@ -9,17 +9,18 @@ namespace perception {
 namespace {
 
 // All assumed.
-constexpr double kSeenElsewhere = 0.02;         // P(a phantom is seen) outside of wakes
+constexpr double kSure = 0.999;                 // P(phantom), at most
 constexpr double kDrift = 3, kDriftSpread = 1;  // [m/s] of spray, by the wind
 
 Vector2 placeOf(const Track& track) {
   return track.bank[track.filterOf(static_cast<std::size_t>(track.likeliestClass()))].x.head<2>();
 }
 
+/// Outside of wakes a cloud fades from its first detection on, as of an unknown vehicle's.
 double phantomDetection(const Track& track, const MeasurementScan& scan) {
-  if (!scan.wakes) return kSeenElsewhere;
-  const auto age = scan.wakes->age(placeOf(track), scan.state.stamp);
-  return age ? WakeMap::detection(scan.modality, *age) : kSeenElsewhere;
+  const Stamp now = scan.state.stamp;
+  const auto age = scan.wakes ? scan.wakes->age(placeOf(track), now) : std::nullopt;
+  return WakeMap::detection(scan.modality, age ? *age : now - track.birth);
 }
 
 /// Likelihood of the speed of a phantom, 1 up to that of the wind.
@@ -37,9 +38,10 @@ double drifts(const Track& track, const FilterModel& model) {
   return std::exp(-0.5 * excess * excess / (kDriftSpread * kDriftSpread + u.dot(P * u)));
 }
 
-void weigh(double as_phantom, double as_object, Track& track) {
-  const double phantom = track.phantom * as_phantom, object = (1 - track.phantom) * as_object;
-  if (phantom + object > 0) track.phantom = phantom / (phantom + object);
+/// P(phantom) after Bayes' rule.
+double weighed(double before, double as_phantom, double as_object) {
+  const double phantom = before * as_phantom, object = (1 - before) * as_object;
+  return phantom + object > 0 ? phantom / (phantom + object) : before;
 }
 
 }  // namespace
@@ -53,15 +55,23 @@ double detectionWithPhantom(const Track& track, const MeasurementScan& scan, dou
   return (1 - track.phantom) * detection + track.phantom * phantomDetection(track, scan);
 }
 
-void phantomHit(const MeasurementScan& scan, double detection, const FilterModel& model,
-                Track& track) {
+double phantomOdds(const Measurement& m) {
+  return m.phantom ? m.phantom->probability / (1 - std::min(m.phantom->probability, kSure)) : 0;
+}
+
+void phantomHit(const Measurement& m, double shape, const MeasurementScan& scan, double detection,
+                const FilterModel& model, Track& track) {
   if (track.phantom <= 0) return;
-  weigh(phantomDetection(track, scan) * drifts(track, model), detection, track);
+  const double seen = phantomDetection(track, scan) * drifts(track, model);
+  const double without = weighed(track.phantom, seen, detection);
+  const double with = weighed(track.phantom, std::exp(shape) * seen, detection);
+  // A shape makes no phantom of what lies where hardly anything makes some.
+  track.phantom = m.phantom ? std::min(with, std::max(without, m.phantom->cause)) : without;
 }
 
 void phantomMiss(const MeasurementScan& scan, double detection, Track& track) {
   if (track.phantom <= 0) return;
-  weigh(1 - phantomDetection(track, scan), 1 - detection, track);
+  track.phantom = weighed(track.phantom, 1 - phantomDetection(track, scan), 1 - detection);
 }
 
 }  // namespace perception

@@ -50,6 +50,7 @@ std::optional<Look> lookOf(const Track& track, const Measurement& m, const Measu
   Look look;
   if (m.view && (look.memory = scan.model->evidenceMemory())) {
     look.view = *m.view;
+    if (m.phantom) look.phantom = m.phantom->evidence;
     look.said.resize(m.log_class.size());
     std::copy(m.log_class.begin(), m.log_class.end(), look.said.begin());
     return look;
@@ -135,9 +136,19 @@ double RepeatedEvidence::added(std::size_t j) const {
 }
 
 double RepeatedEvidence::mean(std::size_t j) const {
-  if (!seen_) return look_.said[j];
+  return mean(look_.said[j], seen_ ? seen_->mean[j] : 0);
+}
+
+double RepeatedEvidence::mean(double said, double mean_before) const {
+  if (!seen_) return said;
   const double before = kept_ * seen_->returns, now = worth_ * look_.view.returns;
-  return (before * seen_->mean[j] + now * look_.said[j]) / (before + now * look_.weight);
+  return (before * mean_before + now * said) / (before + now * look_.weight);
+}
+
+double RepeatedEvidence::phantomAdded() const {
+  if (!seen_) return look_.phantom;
+  const EvidenceMemory& memory = *look_.memory;
+  return memory.looks(views()) * phantomMean() - memory.looks(seen_->views) * seen_->phantom;
 }
 
 double RepeatedEvidence::returns() const {
@@ -146,10 +157,12 @@ double RepeatedEvidence::returns() const {
   return (kept_ * seen_->returns + worth * look_.view.returns) / (kept_ + worth);
 }
 
-void rememberEvidence(const Look& look, const MeasurementScan& scan, Track& track) {
+double rememberEvidence(const Look& look, const MeasurementScan& scan, Track& track) {
   const RepeatedEvidence evidence(track, look, scan);
+  const double added = evidence.phantomAdded();  // borrows what is replaced below
   const std::uint64_t key = sensorKey(scan.sensor);
-  EvidenceSeen now{key, scan.state.stamp, look.view, evidence.views(), evidence.returns(), {}};
+  EvidenceSeen now{key, scan.state.stamp, look.view, evidence.views(), evidence.returns(), {}, 0};
+  now.phantom = evidence.phantomMean();
   for (std::size_t j = 0; j < look.said.size(); ++j) now.mean.push_back(evidence.mean(j));
   const auto seen = std::find_if(track.evidence.begin(), track.evidence.end(),
                                  [&](const EvidenceSeen& e) { return e.sensor == key; });
@@ -158,6 +171,7 @@ void rememberEvidence(const Look& look, const MeasurementScan& scan, Track& trac
   } else {
     *seen = std::move(now);
   }
+  return added;
 }
 
 void rememberBirth(const Measurement& m, const MeasurementScan& scan, const FilterModel& model,

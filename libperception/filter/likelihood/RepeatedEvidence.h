@@ -14,8 +14,9 @@ namespace perception {
 struct Look {
   const EvidenceMemory* memory = nullptr;  ///< never null
   EvidenceView view;
-  ClassValues said;   ///< log likelihood by class
-  double weight = 1;  ///< below 1: a part of the object was in view, and `said` is of that part
+  ClassValues said;    ///< log likelihood by class
+  double phantom = 0;  ///< log likelihood of a phantom over that of anything else
+  double weight = 1;   ///< below 1: a part of the object was in view, and `said` is of that part
 };
 
 /// Of a measurement taken for the track, or born from: its evidence by the shape, or, of a sensor
@@ -48,11 +49,15 @@ class RepeatedEvidence {
   double added(std::size_t j) const;
   /// With this look: mean log likelihood of class j, and the independent looks it is of.
   double mean(std::size_t j) const;
+  /// The same of a phantom over anything else.
+  double phantomAdded() const;
+  double phantomMean() const { return mean(look_.phantom, seen_ ? seen_->phantom : 0); }
   double views() const { return std::max(1.0, kept_ + worth_ * look_.weight); }
   /// With this look: mean number of returns of the looks.
   double returns() const;
 
  private:
+  double mean(double said, double before) const;
   double total(double looks, double value, double best) const;
 
   Look look_;
@@ -62,8 +67,8 @@ class RepeatedEvidence {
   double best_before_ = 0, best_now_ = 0;                    ///< totals of the likeliest class
 };
 
-/// Stores what was said of a track.
-void rememberEvidence(const Look& look, const MeasurementScan& scan, Track& track);
+/// Stores what was said of a track. Returns what this look adds to the log odds of a phantom.
+double rememberEvidence(const Look& look, const MeasurementScan& scan, Track& track);
 /// Stores the look that a track is born from, whose log_class has what `m` said, and adds what the
 /// look says more.
 void rememberBirth(const Measurement& m, const MeasurementScan& scan, const FilterModel& model,

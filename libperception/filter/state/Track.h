@@ -69,6 +69,7 @@ struct EvidenceSeen {
   double views = 0;          ///< independent looks, but for the part of the errors that stays
   double returns = 1;        ///< mean number of returns of a look
   std::vector<double> mean;  ///< of Measurement::log_class, over all returns of all looks
+  double phantom = 0;        ///< the same of PhantomLook::evidence
 };
 
 /// A disc that contains the means of all class filters and its growth over time: tells whether a
@@ -91,7 +92,7 @@ struct Track {
   Stamp last_in_view;         ///< last scan in whose field of view it was
   Stamp last_lane;            ///< last update by the lane prior; 0 = never
   double existence = 0;       ///< probability that its detections have a cause that goes on
-  /// Probability that this cause is a phantom in a wake and not an object, given existence.
+  /// Probability that this cause is a phantom and not an object, given existence.
   double phantom = 0;
   /// Probability that it stands, if it is a vehicle: without it every view of a waiting car would
   /// say that it is rather something that never moves.

@@ -226,10 +226,10 @@ Track hitTrack(Track predicted, const TrackLikelihoods& row, const PairLikelihoo
         pair.log_class_evidence[i] + model.params.kinematic_exponent * logSpeed(c, f, model);
   }
   if (m.base_z) scalarUpdate(*m.base_z, track.base_z);
-  if (look) rememberEvidence(*look, scan, track);
+  const double shape = look ? rememberEvidence(*look, scan, track) : 0;
   updateSizes(m, axisOf(model, track), model, track);
   clampClasses(model.params.class_epsilon, track.log_class);
-  phantomHit(scan, row.detection, model, track);
+  phantomHit(m, shape, scan, row.detection, model, track);
   decideClass(model, pair.nis[static_cast<std::size_t>(best)] > surprisingNis(axes_seen), track);
   return track;
 }

@@ -97,4 +97,13 @@ std::array<double, kShapes> ClusterClassifier::evidence(
   return evidence;
 }
 
+double ClusterClassifier::phantomEvidence(const std::array<double, kClusterKinds>& p) const {
+  const auto logOdds = [](double q) {
+    const double bounded = std::clamp(q, kLeastProbability, 1 - kLeastProbability);
+    return std::log(bounded / (1 - bounded));
+  };
+  const double ratio = logOdds(p[kPhantom]) - logOdds(prior_[kPhantom]);
+  return std::clamp(ratio, -kMostEvidence, kMostEvidence) * (1 - p[kMixed]);
+}
+
 }  // namespace perception

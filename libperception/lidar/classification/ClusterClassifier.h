@@ -70,6 +70,9 @@ class ClusterClassifier {
   std::array<double, kShapes> evidence(
       const std::array<double, kClusterKinds>& probabilities) const;
 
+  /// log p(descriptor | phantom) / p(descriptor | anything else), limited likewise.
+  double phantomEvidence(const std::array<double, kClusterKinds>& probabilities) const;
+
   /// Reads a file as of write(). Nothing in it is trusted: throws DataError with the place of the
   /// first fault and what was expected there.
   static ClusterClassifier read(const std::string& file);

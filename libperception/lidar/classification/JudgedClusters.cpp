@@ -236,6 +236,8 @@ Judgement judgedClusters(const LidarDetections& found, const LidarCloud& cloud,
     }
     JudgedCluster cluster;
     cluster.phantom = phantom;
+    cluster.looks_phantom = classifier.phantomEvidence(clusters[i].probabilities);
+    cluster.cause = std::max({causes.weather, causes.cloud, causes.spray});
     cluster.evidence = classifier.evidence(p);
     if (roadUserEvidence(cluster) < kSurelyThing) continue;
     cluster.points = std::move(clusters[i].segment.points);

@@ -13,6 +13,7 @@ bool PhantomCauses::any() const {
 
 CausesHere PhantomCauses::at(const Vector2& place, Stamp now, bool likeliest_alone) const {
   CausesHere here = {weather, clouds != nullptr ? clouds->at(place) : 0};
+  here.spray = spray;
   if (wakes == nullptr || (likeliest_alone && weather >= kWake)) return here;
   const WakeMap::Past past = wakes->pastOf(place, now);
   here.wake = past.has_left ? kWake : 0;

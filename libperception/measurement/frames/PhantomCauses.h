@@ -15,6 +15,7 @@ struct CausesHere {
   double cloud = 0;    ///< the lidar sees a cloud there
   double wake = 0;     ///< a vehicle has just left the place
   double came = 0;     ///< the same, or it must have come by before it was first seen
+  double spray = 0;    ///< vehicles throw up spray, everywhere; no cause for likelier()
   double likelier() const { return std::max({weather, cloud, came}); }
   /// Whether likely a cloud hangs there that is no weather, whose returns may lie as close together
   /// as a wall's.
@@ -27,6 +28,10 @@ struct PhantomCauses {
   double weather = 0;                       ///< [0, 1] P(the air is not clear), everywhere
   std::shared_ptr<const AirClouds> clouds;  ///< that the lidar sees near by; null: none
   std::shared_ptr<const WakeMap> wakes;     ///< of tracked vehicles; null: none
+  /// [0, 1] P(vehicles throw up spray), by what their wakes showed lately. Vehicles that are not
+  /// tracked do so, too, but this is no cause for the safety grid: any() and likelier() leave it
+  /// out.
+  double spray = 0;
 
   /// False: every return counts in full.
   bool any() const;

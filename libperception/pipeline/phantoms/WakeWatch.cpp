@@ -20,6 +20,7 @@ constexpr double kWide = 1000;             // [m^2] of wakes without a phantom, 
 constexpr double kMisjudged = 0.3;         // share of phantoms that are not told by their shape
 constexpr double kLongestStep = 0.3;       // [s] between two footprints of a track
 constexpr double kCame = 1;                // [s] for which it drove before its first one
+constexpr double kSpray = 2;               // phantoms remembered by which spray is as likely as not
 constexpr double kNone = 0.05;             // phantoms remembered: fewer are none
 
 /// The vehicle of a track that has a wake; empty: it has none.
@@ -55,6 +56,12 @@ std::shared_ptr<const WakeMap> WakeWatch::at(Stamp stamp) const {
   auto wakes = std::make_shared<WakeMap>(wakes_);
   wakes->advance(stamp);
   return wakes;
+}
+
+double WakeWatch::spray(std::size_t sensor, Stamp stamp) const {
+  const Seen& seen = seen_[sensor];
+  const double phantoms = seen.phantoms * std::exp(-(stamp - seen.stamp) / kWakeMemory);
+  return phantoms >= kNone ? phantoms / (phantoms + kSpray) : 0;
 }
 
 void WakeWatch::apply(std::size_t sensor, MeasurementScan& scan) const {

@@ -18,6 +18,8 @@ class WakeWatch {
 
   /// The wakes at an instant; null: none.
   std::shared_ptr<const WakeMap> at(Stamp stamp) const;
+  /// [0, 1] P(vehicles throw up spray), by the phantoms that this sensor saw in wakes lately.
+  double spray(std::size_t sensor, Stamp stamp) const;
   /// Gives a scan the wakes, if phantoms were seen in wakes lately.
   void apply(std::size_t sensor, MeasurementScan& scan) const;
   /// The scan after that; `hypothesis`: the most probable one after it.

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "libperception/filter/CRbpfTracker.h"
+#include "tests/filter/likelihood/RememberingSensor.h"
 #include "tests/support/FilterWorld.h"
 
 namespace perception {
@@ -82,6 +83,33 @@ TEST(PhantomOdds, OutsideOfTheWakeNothingChanges) {
   beside.start = dry.start = {10, 12};
   dry.wake = false;
   EXPECT_EQ(beside.realAfter(0.5), dry.realAfter(0.5));
+}
+
+/// P(a real object) of a track that is born from a cluster and hit by two more, a tenth of a second
+/// apart, of which each looks like a phantom by `look`.
+double realByShape(const std::optional<PhantomLook>& look) {
+  test::RepeatFixture f;
+  f.model.params.existence_max = 0.999;
+  const auto scanAt = [&](double t) {
+    MeasurementScan scan = f.seen(t, test::kAhead, {-1, 0});
+    scan.measurements[0].phantom = look;
+    return scan;
+  };
+  Track track = f.born(scanAt(0));
+  for (const double t : {0.1, 0.2}) track = f.hit(track, scanAt(t));
+  return track.real();
+}
+
+TEST(PhantomOdds, WhatLooksLikeSprayWhereSomethingMakesSprayIsNoObject) {
+  EXPECT_GT(realByShape(std::nullopt), 0.95) << "no cause, or not told by its shape";
+  const double as_spray = realByShape(PhantomLook{0.9, 0.6, 5});
+  EXPECT_LT(as_spray, 0.4);
+  EXPECT_LT(as_spray, 0.9 * realByShape(PhantomLook{0.9, 0.6, 0})) << "each look counts";
+  EXPECT_GT(realByShape(PhantomLook{0.9, 0.01, -3}), 0.95) << "it looks like an object";
+}
+
+TEST(PhantomOdds, AShapeMakesNoPhantomWhereHardlyAnythingMakesPhantoms) {
+  EXPECT_GT(realByShape(PhantomLook{0.02, 0.02, 6}), 0.97);
 }
 
 }  // namespace

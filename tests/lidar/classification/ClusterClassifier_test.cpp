@@ -152,6 +152,13 @@ TEST(ClusterClassifier, EvidenceIsTheLogRatioToAThingOrAPhantomWithoutThePrior) 
               0.8 * std::log((0.1 / 0.1) / none), 1e-14);
 }
 
+TEST(ClusterClassifier, EvidenceOfAPhantomIsTheLogRatioToAnythingElse) {
+  const auto classifier =
+      constant({0.3, 0.1, 0.1, 0.2, 0.1, 0.2}, {0.1, 0.1, 0.1, 0.54, 0.06, 0.1});
+  const auto p = classifier.probabilities(Descriptor{});
+  EXPECT_NEAR(classifier.phantomEvidence(p), 0.8 * std::log(0.1 / 0.9 / (0.06 / 0.94)), 1e-14);
+}
+
 TEST(ClusterClassifier, EvidenceIsLimited) {
   const auto e = constant({1, 1e-300, 1e-9, 1e-6, 1e-9, 1e-300}).evidence(Descriptor{});
   EXPECT_NEAR(e[0], 6, 1e-12);

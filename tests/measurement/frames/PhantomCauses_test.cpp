@@ -38,6 +38,14 @@ TEST(PhantomCauses, ACloudIsInItsSectorAndNearTheSensor) {
   EXPECT_FALSE(causes.at({99, 60}, Stamp{}).inCloud()) << "fog is everywhere";
 }
 
+TEST(PhantomCauses, SprayElsewhereIsNoCauseForTheSafetyGrid) {
+  PhantomCauses causes;
+  causes.spray = 0.8;
+  EXPECT_FALSE(causes.any());
+  EXPECT_EQ(causes.at({5, 0}, Stamp{}).spray, 0.8);
+  EXPECT_EQ(causes.at({5, 0}, Stamp{}).likelier(), 0);
+}
+
 TEST(PhantomCauses, AWakeIsWhereAVehicleWasAndIsNoMore) {
   auto wakes = std::make_shared<WakeMap>();
   VehicleFootprint car;

@@ -74,6 +74,17 @@ TEST(WakeWatch, ASensorThatSawNoPhantomsStartsNone) {
   EXPECT_EQ(scan.wakes->density, 0);
 }
 
+TEST(WakeWatch, PhantomsInWakesSayThatVehiclesThrowUpSpray) {
+  const Stamp now = Stamp::fromSeconds(1002);
+  World wet, dry, beside;
+  wet.after(20, {{10, 0}}), dry.after(20, {}), beside.after(20, {{10, 8}});
+  EXPECT_GT(wet.watch.spray(0, now), 0.7);
+  EXPECT_EQ(wet.watch.spray(1, now), 0) << "a sensor that saw none";
+  EXPECT_LT(wet.watch.spray(0, Stamp::fromSeconds(1032)), 0.5) << "half a minute later";
+  EXPECT_EQ(dry.watch.spray(0, now), 0);
+  EXPECT_EQ(beside.watch.spray(0, now), 0);
+}
+
 TEST(WakeWatch, ARestartForgetsTheWakes) {
   World world;
   world.after(20, {{10, 0}});
