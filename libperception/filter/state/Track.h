@@ -105,6 +105,10 @@ struct Track {
   /// [m] from complete sides, without a class prior: evidence of the class. The estimate given a
   /// class is the `extent` of its filter.
   ScalarEstimate length, width;
+  /// The same, but a side that fits a vehicle better across its heading is taken so: evidence
+  /// between classes of one shape.
+  ScalarEstimate fitting_length, fitting_width;
+  double longest = 0;  ///< [m] of the sides that clusters of it showed as a likely vehicle
   /// [rad] world. Body heading of an object whose class has no heading in its state (people); set
   /// by the first detection with a heading.
   std::optional<ScalarEstimate> body_heading;

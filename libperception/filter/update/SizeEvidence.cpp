@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "libperception/core/math/Angle.h"
 #include "libperception/core/math/KalmanUpdate.h"
+#include "libperception/core/math/LogMath.h"
 
 namespace perception {
 namespace {
@@ -20,6 +22,12 @@ constexpr double kLargest = 15;  // [m] of those
 /// are lower than two thirds of it (five recordings).
 constexpr double kShareOfParts = 0.2;
 constexpr double kTallest = 4, kWidest = 4;  // [m] of those, which have any size up to that
+/// Share of headings that are across, of what has hardly been seen, and of clusters that hold more
+/// than their vehicle (assumed).
+constexpr double kShareAcross = 0.1, kShareOfTwo = 0.05;
+constexpr double kMostSigmas = 4;  // by which vehicles are longer than the mean of their class
+/// Evidence of a likely vehicle: with one in ten clusters, as likely as not.
+constexpr double kLikelyVehicle = 2;
 /// A side measures length or width if it is this close to parallel or perpendicular to the axis.
 constexpr double kAlong = radians(30);
 
@@ -39,35 +47,89 @@ double logSide(const ScalarEstimate& side, double mean, double sigma) {
   return std::log((1 - kShareOfAnySize) * density + kShareOfAnySize / kLargest);
 }
 
-double logSides(const ObjectClass& c, const Track& track) {
-  return logSide(track.length, c.length, c.length_sigma) +
-         logSide(track.width, c.width, c.width_sigma);
+double logSides(const ObjectClass& c, const ScalarEstimate& length, const ScalarEstimate& width) {
+  return logSide(length, c.length, c.length_sigma) + logSide(width, c.width, c.width_sigma);
+}
+
+/// Of the sides between classes of one shape.
+double logFittingSides(const ObjectClass& c, const Track& track) {
+  const bool too_long = track.longest > c.length + kMostSigmas * c.length_sigma;
+  return logSides(c, track.fitting_length, track.fitting_width) +
+         (too_long ? std::log(kShareOfTwo) : 0);
 }
 
 /// Log density of a size that may be that of a part, by those of whole objects; `any`: density of
-/// parts. A part says nothing between classes of one shape: they keep the ratio of whole objects.
-template <class Whole>
-double logPart(const ClassTable& classes, const ObjectClass& c, double any, const Whole& whole) {
-  double likeliest = whole(c);
-  for (const ObjectClass& other : classes.classes)
-    if (other.shape == c.shape) likeliest = std::max(likeliest, whole(other));
-  return whole(c) + std::log(1 - kShareOfParts + kShareOfParts * any * std::exp(-likeliest));
+/// parts. A part says nothing between classes of one shape: they keep the ratio of whole objects,
+/// by `fitting`.
+template <class Whole, class Fitting>
+double logPart(const ClassTable& classes, const ObjectClass& c, double any, const Whole& whole,
+               const Fitting& fitting) {
+  double likeliest = whole(c), best = fitting(c);
+  for (const ObjectClass& other : classes.classes) {
+    if (other.shape != c.shape) continue;
+    likeliest = std::max(likeliest, whole(other));
+    best = std::max(best, fitting(other));
+  }
+  return fitting(c) - best + likeliest +
+         std::log(1 - kShareOfParts + kShareOfParts * any * std::exp(-likeliest));
 }
 
-/// Complete sides into length and width. False: none.
-bool seeSides(const PartialBox& sides, double axis, double default_sigma, Track& track) {
+/// Complete sides as estimates of length and width.
+struct CompleteSides {
+  std::optional<ScalarEstimate> length, width;
+
+  CompleteSides(const PartialBox& sides, bool a_is_length, double default_sigma) {
+    const auto estimate = [&](double size, double sigma) {
+      const double s = sigma > 0 ? sigma : default_sigma;
+      return ScalarEstimate{size, s * s};
+    };
+    if (sides.length_complete)
+      (a_is_length ? length : width) = estimate(sides.length, sides.length_sigma);
+    if (sides.width_complete)
+      (a_is_length ? width : length) = estimate(sides.width, sides.width_sigma);
+  }
+
+  void into(ScalarEstimate& l, ScalarEstimate& w) const {
+    if (length) scalarUpdate(*length, l, kSideFloor);
+    if (width) scalarUpdate(*width, w, kSideFloor);
+  }
+
+  /// Log likelihood given the track's likeliest class that has a heading, whose log probability is
+  /// without what sides have said before.
+  double fit(const ClassTable& classes, const Track& track) const {
+    double best = kMinusInfinity;
+    for (ClassId j = 0; j < classes.size(); ++j) {
+      const ObjectClass& c = classes[j];
+      if (!c.motion->has_heading) continue;
+      best = std::max(best, track.log_class[static_cast<std::size_t>(j)] +
+                                (length ? logSide(*length, c.length, c.length_sigma) : 0) +
+                                (width ? logSide(*width, c.width, c.width_sigma) : 0));
+    }
+    return best;
+  }
+};
+
+bool isLikelyVehicle(const Measurement& m, const ClassTable& classes) {
+  for (std::size_t j = 0; j < m.log_class.size(); ++j)
+    if (classes[static_cast<ClassId>(j)].shape == ObjectShape::kVehicle &&
+        m.log_class[j] > kLikelyVehicle)
+      return true;
+  return false;
+}
+
+void seeSides(const Measurement& m, double axis, const FilterModel& model, Track& track) {
+  const PartialBox& sides = *m.sides;
+  if (m.view && isLikelyVehicle(m, model.classes))
+    track.longest = std::max({track.longest, sides.length, sides.width});
   const double angle = std::abs(wrapAxis(sides.yaw - axis));  // [0, pi/2]
-  if (angle > kAlong && angle < kPi / 2 - kAlong) return false;
+  if (angle > kAlong && angle < kPi / 2 - kAlong) return;
   const bool a_is_length = angle <= kAlong;
-  const auto see = [&](double size, double sigma, ScalarEstimate& x) {
-    const double s = sigma > 0 ? sigma : default_sigma;
-    scalarUpdate({size, s * s}, x, kSideFloor);
-  };
-  if (sides.length_complete)
-    see(sides.length, sides.length_sigma, a_is_length ? track.length : track.width);
-  if (sides.width_complete)
-    see(sides.width, sides.width_sigma, a_is_length ? track.width : track.length);
-  return sides.length_complete || sides.width_complete;
+  const CompleteSides seen(sides, a_is_length, model.params.side_sigma),
+      turned(sides, !a_is_length, model.params.side_sigma);
+  seen.into(track.length, track.width);
+  const bool across = m.view && turned.fit(model.classes, track) + std::log(kShareAcross) >
+                                    seen.fit(model.classes, track);
+  (across ? turned : seen).into(track.fitting_length, track.fitting_width);
 }
 
 ScalarEstimate mixtureOf(const ClassTable& classes, double ObjectClass::*mean,
@@ -91,12 +153,14 @@ void startSizes(const FilterModel& model, Track& track) {
   track.height = {height, height_variance + 0.25};
   track.length = mixtureOf(model.classes, &ObjectClass::length, &ObjectClass::length_sigma);
   track.width = mixtureOf(model.classes, &ObjectClass::width, &ObjectClass::width_sigma);
+  track.fitting_length = track.length, track.fitting_width = track.width;
 }
 
 void updateSizes(const Measurement& m, std::optional<double> axis, const FilterModel& model,
                  Track& track) {
   const auto& p = model.params;
-  const auto count = [&](double exponent, double any, const auto& whole, const auto& see) {
+  const auto count = [&](double exponent, double any, const auto& whole, const auto& fitting,
+                         const auto& see) {
     if (exponent <= 0) {
       see();
       return;
@@ -105,7 +169,7 @@ void updateSizes(const Measurement& m, std::optional<double> axis, const FilterM
       for (ClassId j = 0; j < model.classes.size(); ++j) {
         const ObjectClass& c = model.classes[j];
         track.log_class[static_cast<std::size_t>(j)] +=
-            sign * exponent * (m.view ? logPart(model.classes, c, any, whole) : whole(c));
+            sign * exponent * (m.view ? logPart(model.classes, c, any, whole, fitting) : whole(c));
       }
     };
     add(-1);
@@ -113,16 +177,16 @@ void updateSizes(const Measurement& m, std::optional<double> axis, const FilterM
     add(1);
   };
   if (m.height) {
-    count(
-        p.height_exponent, std::sqrt(kTwoPi) / kTallest,
-        [&](const ObjectClass& c) { return logHeight(c, track.height); },
-        [&] { scalarUpdate(*m.height, track.height); });
+    const auto whole = [&](const ObjectClass& c) { return logHeight(c, track.height); };
+    count(p.height_exponent, std::sqrt(kTwoPi) / kTallest, whole, whole,
+          [&] { scalarUpdate(*m.height, track.height); });
   }
   if (m.sides && axis) {
     count(
         p.side_exponent, 1 / (kLargest * kWidest),
-        [&](const ObjectClass& c) { return logSides(c, track); },
-        [&] { seeSides(*m.sides, *axis, p.side_sigma, track); });
+        [&](const ObjectClass& c) { return logSides(c, track.length, track.width); },
+        [&](const ObjectClass& c) { return logFittingSides(c, track); },
+        [&] { seeSides(m, *axis, model, track); });
   }
 }
 

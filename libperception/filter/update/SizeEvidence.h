@@ -9,7 +9,8 @@ namespace perception {
 /// Size as evidence of the class (method.md 5.14). Height, length and width are estimated without a
 /// class prior (Track::height, length, width); the class likelihood is the density of the estimate
 /// over the sizes of the class. When an estimate changes, its former likelihood is divided out, so
-/// that each size counts once.
+/// that each size counts once. Of clusters that are told by their shape, classes of one shape are
+/// told apart by the sides as they fit best along or across the heading, and by the longest one.
 
 /// Initial estimates of a newborn: moments of the mixture of all classes.
 void startSizes(const FilterModel& model, Track& track);

@@ -145,7 +145,8 @@ void updateShape(const ObjectClass& c, const Measurement& m, const std::optional
     if (const auto yaw = lengthAxis(c, f, track, *m.sides))
       f.extent = updateExtent(f.extent, *m.sides, *yaw, model.params.side_sigma);
   }
-  if (c.reported && c.motion->has_heading) f.extent = boundedExtent(f.extent, c);
+  if (c.reported && c.motion->has_heading)
+    f.extent = boundedExtent(f.extent, c, m.view.has_value());
 }
 
 /// Log likelihood of the speed: constant up to the class's max_speed, then a Gaussian tail.

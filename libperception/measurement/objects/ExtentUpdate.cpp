@@ -9,7 +9,8 @@ namespace {
 
 constexpr double kFloor = 0.1 * 0.1;    // [m^2]
 constexpr double kFloorShare = 1. / 9;  // as for nine independent errors
-constexpr double kMostSigmas = 3;       // of a class's width; assumed
+constexpr double kMostSigmas = 3;       // by which one is wider than the mean of its class; assumed
+constexpr double kLeastSigmas = 4;      // by which a vehicle is shorter; assumed
 
 void updateSide(double seen, bool complete, double own_sigma, double sigma, double& mean,
                 double& var) {
@@ -40,8 +41,10 @@ Extent updateExtent(const Extent& extent, const PartialBox& sides, double yaw, d
   return out;
 }
 
-Extent boundedExtent(Extent extent, const ObjectClass& c) {
+Extent boundedExtent(Extent extent, const ObjectClass& c, bool told_by_shape) {
   extent.width = std::min(extent.width, c.width + kMostSigmas * c.width_sigma);
+  if (told_by_shape && c.shape == ObjectShape::kVehicle)
+    extent.length = std::max(extent.length, c.length - kLeastSigmas * c.length_sigma);
   return extent;
 }
 

@@ -14,7 +14,8 @@ namespace perception {
 Extent updateExtent(const Extent& extent, const PartialBox& sides, double yaw, double sigma);
 
 /// The extent of an object of a class, at most three standard deviations of the class wider than
-/// its mean: what a cluster has beside that is spray or a neighbor (method.md 5.13).
-Extent boundedExtent(Extent extent, const ObjectClass& c);
+/// its mean: what a cluster has beside that is spray or a neighbor (method.md 5.13). If clusters
+/// are `told_by_shape`, a vehicle is at most four shorter: what is seen then is a part of it.
+Extent boundedExtent(Extent extent, const ObjectClass& c, bool told_by_shape);
 
 }  // namespace perception

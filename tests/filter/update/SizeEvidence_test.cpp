@@ -137,6 +137,54 @@ TEST(SizeEvidence, WhatMayBeAPartTellsCarsFromBusesAsAWholeDoes) {
   }
 }
 
+/// A cluster whose longer side alone is complete, across the axis 0.
+Measurement across(double side) {
+  Measurement m = cluster(1.7);
+  m.height.reset();
+  m.sides = box(side, 1.6).sides;
+  m.sides->yaw = kPi / 2 - 0.1;
+  m.sides->width_complete = false;
+  return m;
+}
+
+TEST(SizeEvidence, ASideTooLongForAWidthIsALength) {
+  const FilterModel model = shippedModel();
+  const auto car = static_cast<std::size_t>(model.classes.find("car"));
+  constexpr double kLikelyCar = 5;
+  const auto seen = [&](Measurement m, bool told_by_shape) {
+    if (!told_by_shape) m.view.reset();
+    Track track = newborn(model);
+    track.log_class[car] = kLikelyCar;
+    for (int i = 0; i < 5; ++i) updateSizes(m, 0.0, model, track);
+    track.log_class[car] -= kLikelyCar;  // what the sides have added remains
+    return track;
+  };
+  const Track van = seen(across(3.8), true);
+  EXPECT_GT(odds(model, van, "car", "bus"), 1);
+  EXPECT_NEAR(van.width.mean, 3.8, 0.2) << "between shapes the heading is believed";
+  EXPECT_LT(odds(model, seen(across(3.8), false), "car", "bus"), 0) << "a detector knows its axis";
+  const Track rear = seen(across(1.8), true);
+  EXPECT_NEAR(rear.fitting_width.mean, rear.width.mean, 1e-12) << "that is a width";
+}
+
+TEST(SizeEvidence, WhatIsLongerThanAnyCarIsMoreLikelyABus) {
+  const FilterModel model = shippedModel();
+  const auto seen = [&](double length, double vehicle) {
+    Measurement m = cluster(1.7);
+    m.height.reset();
+    m.sides = box(length, 1.6).sides;
+    m.sides->length_complete = m.sides->width_complete = false;
+    for (const ObjectClass& c : model.classes.classes)
+      m.log_class.push_back(c.shape == ObjectShape::kVehicle ? vehicle : -5);
+    Track track = newborn(model);
+    for (int i = 0; i < 5; ++i) updateSizes(m, 0.0, model, track);
+    return odds(model, track, "bus", "car");
+  };
+  EXPECT_NEAR(seen(9.8, 3), std::log(1 / 0.05), 1e-9) << "it may be two cars";
+  EXPECT_NEAR(seen(6.6, 3), 0, 1e-9);
+  EXPECT_NEAR(seen(9.8, 1), 0, 1e-9) << "perhaps a hedge";
+}
+
 TEST(SizeEvidence, NoSizeIsAProof) {
   const FilterModel model = shippedModel();
   Track track = newborn(model);

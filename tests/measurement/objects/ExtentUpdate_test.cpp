@@ -7,6 +7,7 @@ namespace {
 
 ObjectClass car() {
   ObjectClass c;
+  c.shape = ObjectShape::kVehicle;
   c.length = 4.5, c.length_sigma = 0.675, c.width = 1.8, c.width_sigma = 0.27;
   return c;
 }
@@ -14,16 +15,25 @@ ObjectClass car() {
 TEST(BoundedExtent, ACarIsAtMostThreeDeviationsWiderThanTheMean) {
   Extent extent;
   extent.length = 7.2, extent.width = 3.8, extent.var_length = 0.02;
-  const Extent bounded = boundedExtent(extent, car());
+  const Extent bounded = boundedExtent(extent, car(), true);
   EXPECT_DOUBLE_EQ(bounded.length, 7.2) << "a bus taken for a car keeps its length";
   EXPECT_DOUBLE_EQ(bounded.width, 1.8 + 3 * 0.27);
   EXPECT_DOUBLE_EQ(bounded.var_length, 0.02);
 }
 
+TEST(BoundedExtent, ACarIsAtMostFourDeviationsShorterThanTheMean) {
+  Extent extent;
+  extent.length = 1, extent.width = 1.7;
+  const Extent bounded = boundedExtent(extent, car(), true);
+  EXPECT_DOUBLE_EQ(bounded.length, 4.5 - 4 * 0.675) << "what is shorter is a part of one";
+  EXPECT_DOUBLE_EQ(bounded.width, 1.7);
+  EXPECT_DOUBLE_EQ(boundedExtent(extent, car(), false).length, 1) << "a detector's box";
+}
+
 TEST(BoundedExtent, APossibleSizeIsKept) {
   Extent extent;
   extent.length = 5.6, extent.width = 0.4;
-  const Extent bounded = boundedExtent(extent, car());
+  const Extent bounded = boundedExtent(extent, car(), true);
   EXPECT_DOUBLE_EQ(bounded.length, 5.6);
   EXPECT_DOUBLE_EQ(bounded.width, 0.4);
 }
