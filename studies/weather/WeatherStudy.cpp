@@ -47,19 +47,24 @@ TypeCount countTypes(const std::vector<WeatherRow>& rows, WeatherType truth) {
   return count;
 }
 
+/// Light, moderate or heavy: rain above 2.5 and 7.6 mm/h [ams2012].
+int classOfRain(double mm_h) { return mm_h > 7.6 ? 2 : mm_h > 2.5 ? 1 : 0; }
+
 /// Errors of a rate over scans.
 struct RateErrors {
-  std::size_t scans = 0, covered = 0, within = 0;
+  std::size_t scans = 0, covered = 0, within = 0, class_right = 0;
   double sum = 0, square = 0;
 
   void add(const Estimate& e, double truth) {
     ++scans;
     covered += e.low <= truth && truth <= e.high;
     within += e.value <= 1.5 * truth && truth <= 1.5 * e.value;
+    class_right += classOfRain(e.value) == classOfRain(truth);
     sum += e.value, square += (e.value - truth) * (e.value - truth);
   }
   RateErrors& operator+=(const RateErrors& o) {
     scans += o.scans, covered += o.covered, within += o.within;
+    class_right += o.class_right;
     sum += o.sum, square += o.square;
     return *this;
   }
@@ -91,6 +96,9 @@ std::vector<std::string> rateRow(const std::vector<std::string>& head, const Rat
   row.push_back(fmt::format("{:.2f}", std::sqrt(e.perScan(e.square))));
   row.push_back(fmt::format("{:.0f}", 100 * e.share(e.within)));
   row.push_back(fmt::format("{:.0f}", 100 * e.share(e.covered)));
+  row.push_back(head[1] == nameOf(WeatherType::kRain)
+                    ? fmt::format("{:.0f}", 100 * e.share(e.class_right))
+                    : "");
   return row;
 }
 
@@ -144,11 +152,11 @@ class ThroughWeather {
     rates_.push_back(rateRow({"all", "snow", ""}, snow_errors_));
     report.tables.push_back(
         {name + "_types", "Type, simulated weather: " + title, kTypeColumns, types_});
-    report.tables.push_back(
-        {name + "_rates",
-         "Rate after 5 s [mm/h], simulated weather: " + title,
-         {"log", "weather", "true", "scans", "mean", "RMSE", "within 1.5x %", "90 % limits hold %"},
-         rates_});
+    report.tables.push_back({name + "_rates",
+                             "Rate after 5 s [mm/h], simulated weather: " + title,
+                             {"log", "weather", "true", "scans", "mean", "RMSE", "within 1.5x %",
+                              "90 % limits hold %", "class right %"},
+                             rates_});
   }
 
  private:

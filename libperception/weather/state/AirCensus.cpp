@@ -14,7 +14,13 @@ constexpr std::size_t kStep = 7;
 constexpr float kInAir = 0.4F;  // [m] above the ground
 // Sines of elevations.
 const float kLevelFrom = std::sin(static_cast<float>(radians(-2))),
-            kLevelTo = std::sin(static_cast<float>(radians(1)));
+            kLevelTo = std::sin(static_cast<float>(radians(1))),
+            kBelowFrom = std::sin(static_cast<float>(radians(-7.5))),
+            kBelowTo = std::sin(static_cast<float>(radians(-4.5)));
+// [m] a surface of 20 % beyond it sends back no more than the drops and flakes that are just seen.
+constexpr float kOpen = 40;
+
+bool isLevel(float up) { return up > kLevelFrom && up < kLevelTo; }
 
 std::size_t sectorOf(float x, float y) {
   // Where a close angle (3e-4 rad) is clearly within a sector, the exact one is in it, too.
@@ -33,7 +39,11 @@ void countReturn(float x, float y, float range, float height, float mount, AirCe
   AirCensus::Sector& sector = census.sectors[sectorOf(x, y)];
   const float up = (height - mount) / range;
   sector.returns += kStep;
-  if (up > kLevelFrom && up < kLevelTo) sector.level += kStep;
+  if (isLevel(up)) {
+    sector.level += kStep;
+    if (range < kOpen) sector.blocked += kStep;
+  }
+  if (up > kBelowFrom && up < kBelowTo) sector.below += kStep;
   const auto bin = std::min(static_cast<std::size_t>(range / 2), AirCensus::kReachBins - 1);
   if (std::abs(height) < kInAir) {
     census.ground[bin] += kStep;
@@ -42,11 +52,20 @@ void countReturn(float x, float y, float range, float height, float mount, AirCe
   }
 }
 
+void countLevel(const LidarCloud& cloud, std::size_t i, float range, std::size_t shell,
+                AirCensus::Sector& sector) {
+  sector.level_lone[shell] += 1;
+  if (shell > 0 || i >= cloud.intensity.size()) return;
+  sector.brightness += static_cast<double>(cloud.intensity[i] * range);
+  sector.lit += cloud.intensity[i] > 0 ? 1 : 0;
+}
+
 }  // namespace
 
 AirCensus AirCensus::of(const SensorFrame& frame, const LidarCloud& cloud,
                         const SuspectReturns& suspects) {
   AirCensus census;
+  census.max_range = cloud.max_range;
   const HeightAboveGround above(frame.T_ego_sensor, frame.ground);
   const float mount = above.of(0, 0, 0);
   for (std::size_t i = 0; i < cloud.size(); i += kStep) {
@@ -61,8 +80,13 @@ AirCensus AirCensus::of(const SensorFrame& frame, const LidarCloud& cloud,
     std::size_t shell = 0;
     while (range >= kShells[shell + 1]) ++shell;
     const std::size_t i = suspects.index[s];
-    census.sectors[sectorOf(cloud.x[i], cloud.y[i])].lone[shell] += 1;
+    AirCensus::Sector& sector = census.sectors[sectorOf(cloud.x[i], cloud.y[i])];
+    sector.lone[shell] += 1;
+    if (isLevel((suspects.height[s] - mount) / range)) countLevel(cloud, i, range, shell, sector);
   }
+  // In the mean: a scan's difference may be below 0, as one is counted and the other one sampled.
+  for (Sector& sector : census.sectors)
+    for (const double lone : sector.level_lone) sector.blocked -= lone;
   return census;
 }
 

@@ -24,8 +24,18 @@ struct AirCensus {
     /// In free air by shell: more than 0.4 m above the ground, and no neighbor on a surface with
     /// it.
     std::array<double, kShellCount> lone{};
+    /// Of those the ones between 2 deg below and 1 deg above the horizon.
+    std::array<double, kShellCount> level_lone{};
+    /// Level returns that are not in free air and nearer than 40 m: nothing is seen behind.
+    double blocked = 0;
+    /// Between 7.5 and 4.5 deg below the horizon, where the road or what stands on it always
+    /// returns: as many beams as in the level band.
+    double below = 0;
+    /// [m] sum over level_lone of the first shell: intensity times range; and how many have one.
+    double brightness = 0, lit = 0;
   };
   std::array<Sector, kSectors> sectors;
+  double max_range = 0;  ///< [m] of the instrument by its data sheet; 0 = unknown
   /// Returns by range: of the ground (within 0.4 m of the plane), and of what stands on it.
   std::array<double, kReachBins> ground{}, upright{};
 

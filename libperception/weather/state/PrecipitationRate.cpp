@@ -13,14 +13,19 @@ namespace {
 constexpr double kRainLaw = 1.69e-4 * 0.597, kSnowLaw = 0.01569 * 0.778;
 // Drops [kilic2021], method.md 9.1.
 constexpr double kDivergence = 0.003, kFresnel = 0.01985, kWeakest = 0.9 / (200.0 * 200.0);
+constexpr double kUsualReach = 200;  // [m] where the data sheet's is not known: (57)
 constexpr double kLightest = 0.02, kHeaviest = 300;  // [mm/h] of the table
 constexpr std::size_t kRates = 97;
 // 90 % limits, as factors (assumed): threshold, divergence and what is behind the air differ by
 // instrument and scene.
-constexpr double kRainFactor = 2.5, kDropsFactor = 4, kSnowFactor = 4;
-// [mm/h] a law that says more was made for another instrument: then only limits are known
-// (assumed; heavy snowfall is 2.5, method.md 9.9).
-constexpr double kMostSnow = 6, kLeastSnow = 0.3;
+constexpr double kRainFactor = 2.5, kDropsFactor = 4, kKnownDropsFactor = 2.5, kSnowFactor = 4;
+// Of flakes by their brightness: divergence and reflectivity known to a tenth each, which together
+// are 1.14 in the diameter.
+constexpr double kBrightFactor = 1.3;
+// [mm/h] a law that says more was made for another instrument: then the flakes' brightness tells,
+// or only limits are known (assumed; heavy snowfall is 2.5, method.md 9.9).
+constexpr double kMostSnow = 12, kLeastSnow = 0.3;
+constexpr double kFlakeReflectivity = 0.9;  // [hahner2022], method.md 9.2
 // Visibility: reflectivities of usual surfaces and of what is just seen (assumed).
 constexpr double kUsual = 0.2, kDull = 0.05, kBright = 0.8;
 
@@ -29,13 +34,13 @@ double rateAt(std::size_t k) {
          std::pow(kHeaviest / kLightest, static_cast<double>(k) / static_cast<double>(kRates - 1));
 }
 
-// Share of beams to the open in which a drop from 1.5 to 6 m is above the threshold.
-double dropsIn(double mm_h) {
+// Mean number of drops from 1.5 to 4 m above the threshold in a beam.
+double dropsIn(double mm_h, double weakest) {
   const double slope = 4.1 * std::pow(mm_h, -0.21);
   constexpr double kStep = 0.05;
   double sum = 0;
-  for (double r = 1.5 + kStep / 2; r < 6; r += kStep) {
-    const double beam = r * kDivergence, filled = kWeakest * r * r / kFresnel;
+  for (double r = 1.5 + kStep / 2; r < 4; r += kStep) {
+    const double beam = r * kDivergence, filled = weakest * r * r / kFresnel;
     if (filled > 1) break;
     const double least = 1e3 * beam * std::sqrt(filled);  // [mm]
     sum += kPi / 4 * beam * beam * 8000 / slope * std::exp(-slope * least) * kStep;
@@ -52,25 +57,41 @@ double opticalRange(double reach, double reflectivity) {
 
 }  // namespace
 
-PrecipitationRate::PrecipitationRate() {
-  for (std::size_t k = 0; k < kRates; ++k) drops_.push_back(dropsIn(rateAt(k)));
+PrecipitationRate::PrecipitationRate() { setReach(0); }
+
+void PrecipitationRate::setReach(double reach) {
+  if (reach == reach_) return;
+  reach_ = reach;
+  const double of = reach > 0 ? reach : kUsualReach;
+  drops_.clear();
+  for (std::size_t k = 0; k < kRates; ++k) drops_.push_back(dropsIn(rateAt(k), 0.9 / (of * of)));
 }
 
-Estimate PrecipitationRate::rain(double near, double open, bool few_far) const {
-  if (!few_far) return within(near / kRainLaw, kRainFactor);
-  const double share = near / std::max(open, 0.01);
-  const auto above = std::lower_bound(drops_.begin(), drops_.end(), share);
+Estimate PrecipitationRate::rain(const AirShares& shares) const {
+  return shares.few_far ? byDrops(shares.drops) : within(shares.all / kRainLaw, kRainFactor);
+}
+
+// A beam with two drops returns once.
+Estimate PrecipitationRate::byDrops(double share) const {
+  const double factor = reach_ > 0 ? kKnownDropsFactor : kDropsFactor;
+  const double drops = -std::log1p(-std::min(share, 0.99));
+  const auto above = std::lower_bound(drops_.begin(), drops_.end(), drops);
   const auto k = static_cast<std::size_t>(above - drops_.begin());
-  if (k == 0) return within(kLightest * share / drops_.front(), kDropsFactor);
-  if (k == kRates) return within(kHeaviest, kDropsFactor);
-  const double part = std::log(share / drops_[k - 1]) / std::log(drops_[k] / drops_[k - 1]);
-  return within(rateAt(k - 1) * std::pow(rateAt(k) / rateAt(k - 1), part), kDropsFactor);
+  if (k == 0) return within(kLightest * drops / drops_.front(), factor);
+  if (k == kRates) return within(kHeaviest, factor);
+  const double part = std::log(drops / drops_[k - 1]) / std::log(drops_[k] / drops_[k - 1]);
+  return within(rateAt(k - 1) * std::pow(rateAt(k) / rateAt(k - 1), part), factor);
 }
 
-Estimate PrecipitationRate::snow(double near) const {
-  const double by_law = near / kSnowLaw;
+// Snow of Gunn and Marshall's law has about as many flakes in light as in heavy snowfall, and
+// larger ones: where the instrument sees nearly all of them, their number says little and their
+// echo much.
+Estimate PrecipitationRate::snow(const AirShares& shares) const {
+  const double by_law = shares.flakes / kSnowLaw;
   if (by_law <= kMostSnow) return within(by_law, kSnowFactor);
-  return {std::sqrt(kLeastSnow * by_law), kLeastSnow, by_law};
+  if (shares.brightness <= 0) return {std::sqrt(kLeastSnow * by_law), kLeastSnow, by_law};
+  const double diameter = 1e3 * kDivergence * shares.brightness / kFlakeReflectivity;  // [mm]
+  return within(std::pow(2.55 * diameter, 1 / 0.48), kBrightFactor);
 }
 
 Estimate visibilityOfReach(double reach) {

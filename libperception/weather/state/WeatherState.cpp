@@ -32,6 +32,11 @@ constexpr std::size_t kOpenBin = 12;  // 24 m
 /// likelier a cloud than plants, and the exponent of the odds by it (method.md 9.10).
 constexpr double kCloud = 550e-4, kCloudExponent = 4;
 constexpr double kHardlyCloud = 0.2;  // P that changes no decision
+constexpr double kFew = 0.3e-4;       // share of beams that says nothing
+// Rates: where the open directions are and how many beams see them.
+constexpr double kOpenShare = 0.2;   // of a sector's level beams: it looks into the open
+constexpr double kLeastOpen = 300;   // beams of a scan
+constexpr double kFiredRank = 0.75;  // of the sectors' returns below the horizon: some are dark
 
 double clampEvidence(double v) { return std::clamp(v, -kMostEvidence, kMostEvidence); }
 
@@ -41,6 +46,26 @@ double quantile(std::vector<double> values, double q) {
   const std::size_t above = std::min(below + 1, values.size() - 1);
   std::sort(values.begin(), values.end());
   return values[below] + (place - static_cast<double>(below)) * (values[above] - values[below]);
+}
+
+/// A value and what it weighs.
+struct Weighed {
+  double value, weight;
+};
+
+double medianOf(std::vector<Weighed> values) {
+  double half = 0;
+  for (const Weighed& v : values) half += v.weight / 2;
+  std::sort(values.begin(), values.end(),
+            [](const Weighed& a, const Weighed& b) { return a.value < b.value; });
+  for (const Weighed& v : values)
+    if ((half -= v.weight) <= 0) return v.value;
+  return 0;
+}
+
+// How much farther away than the first 4 m returns are, which drops are not.
+double fartherOf(const std::array<double, kShells>& lone) {
+  return (lone[2] + kFew) / (lone[0] + lone[1] + kFew);
 }
 
 // Share of the beams with a lone return near by.
@@ -89,6 +114,7 @@ void WeatherEstimator::add(const AirCensus& census, Stamp stamp) {
   if (first) restart();
   last_ = stamp;
   now_ = census.sectors;
+  rates_.setReach(census.max_range);
   blend(census, first, dt);
   for (std::size_t s = 0; s < kSectors; ++s) {
     seen_[s] = std::max(seen_[s], census.sectors[s].returns);
@@ -109,29 +135,35 @@ void WeatherEstimator::blend(const AirCensus& census, bool first, double dt) {
       Sector& mean = means->sectors[s];
       const Sector& now = census.sectors[s];
       move(mean.returns, now.returns), move(mean.level, now.level);
-      for (std::size_t k = 0; k < kShells; ++k) move(mean.lone[k], now.lone[k]);
+      for (std::size_t k = 0; k < kShells; ++k)
+        move(mean.lone[k], now.lone[k]), move(mean.level_lone[k], now.level_lone[k]);
+      move(mean.blocked, now.blocked), move(mean.below, now.below);
+      move(mean.brightness, now.brightness), move(mean.lit, now.lit);
     }
     move(means->above24, above), move(means->within24, within);
     move(means->ground_reach, ground), move(means->upright_reach, upright);
   }
 }
 
+std::vector<const Sector*> WeatherEstimator::looksOf(const Means& means) const {
+  const double best = *std::max_element(seen_.begin(), seen_.end());
+  std::vector<const Sector*> looks;
+  for (std::size_t s = 0; s < kSectors; ++s)
+    if (seen_[s] >= kLeastSeen * best && means.sectors[s].returns > 0)
+      looks.push_back(&means.sectors[s]);
+  return looks;
+}
+
 // The lower quartile over the sectors: weather is everywhere about the sensor, plants are not.
 WeatherEstimator::Signs WeatherEstimator::signsOf(const Means& means) const {
   Signs signs;
-  const double best = *std::max_element(seen_.begin(), seen_.end());
-  std::vector<std::size_t> looks;
+  const std::vector<const Sector*> looks = looksOf(means);
   double returns = 0, level = 0;
-  for (std::size_t s = 0; s < kSectors; ++s) {
-    if (seen_[s] < kLeastSeen * best || means.sectors[s].returns <= 0) continue;
-    looks.push_back(s);
-    returns += means.sectors[s].returns, level += means.sectors[s].level;
-  }
+  for (const Sector* look : looks) returns += look->returns, level += look->level;
   if (looks.size() < 3 || returns < kLeastReturns) return signs;
   for (std::size_t k = 0; k < kShells; ++k) {
     std::vector<double> shares;
-    for (const std::size_t s : looks)
-      shares.push_back(means.sectors[s].lone[k] / means.sectors[s].returns);
+    for (const Sector* look : looks) shares.push_back(look->lone[k] / look->returns);
     signs.lone[k] = quantile(std::move(shares), 0.25);
   }
   if (most_level_ > 0) signs.level = level / (static_cast<double>(looks.size()) * most_level_);
@@ -175,15 +207,45 @@ void WeatherEstimator::follow(const Signs& signs, double dt) {
   for (std::size_t k = 0; k < 3; ++k) log_p_[k] = std::log(std::max(p[k] / sum, 1e-9));
 }
 
+// Level beams: as many as below the horizon, of which nearly all return. Without directions that
+// are open, by all returns.
+AirShares WeatherEstimator::sharesOf(const Signs& signs) const {
+  const auto& lone = signs.lone;
+  AirShares shares;
+  shares.few_far = fartherOf(lone) < kDropsEnd;
+  shares.drops = (lone[0] + lone[1]) / std::max(signs.open, 0.01);
+  shares.all = lone[0] + lone[1] + lone[2];
+  shares.flakes = shares.all + lone[3];
+  const std::vector<const Sector*> looks = looksOf(long_);
+  std::vector<double> below;
+  for (const Sector* look : looks) below.push_back(look->below);
+  const double fired = below.empty() ? 0 : quantile(std::move(below), kFiredRank);
+  std::vector<Weighed> drops, middle, flakes;
+  double sum = 0, near = 0, lit = 0, brightness = 0;
+  for (const Sector* look : looks) {
+    const double open = fired - std::max(0.0, look->blocked);
+    if (!(open > kOpenShare * fired)) continue;
+    const auto& level = look->level_lone;
+    drops.push_back({(level[0] + level[1]) / open, open});
+    middle.push_back({level[2] / open, open});
+    flakes.push_back({(level[0] + level[1] + level[2] + level[3]) / open, open});
+    sum += open, near += level[0], lit += look->lit, brightness += look->brightness;
+  }
+  if (sum < kLeastOpen) return shares;
+  shares.drops = medianOf(std::move(drops)), shares.flakes = medianOf(std::move(flakes));
+  shares.few_far = (medianOf(std::move(middle)) + kFew) / (shares.drops + kFew) < kDropsEnd;
+  if (lit > near / 2) shares.brightness = brightness / near;
+  return shares;
+}
+
 WeatherState WeatherEstimator::state() const {
   WeatherState state;
   if (!last_) return state;
   const Signs signs = signsOf(long_), now = signsOf(brief_);
   const auto& lone = signs.lone;
-  const double near = lone[0] + lone[1] + lone[2], all = near + lone[3];
+  const double all = lone[0] + lone[1] + lone[2] + lone[3];
   // Drops are seen only near by, flakes farther; more returns than any rain gives are flakes.
-  constexpr double kFew = 0.3e-4;
-  const double farther = (lone[2] + kFew) / (lone[0] + lone[1] + kFew);
+  const double farther = fartherOf(lone);
   const double snow = 2 * std::log((all + kFew) / kSnowShare) +
                       std::min(0.0, 3 * std::log(farther / kDropsEnd)) +
                       std::max(0.0, 2 * std::log(farther / kOnlyFar));
@@ -192,8 +254,8 @@ WeatherState WeatherEstimator::state() const {
                        std::exp(log_p_[2])};
   if (now.any)
     state.flurry = 1 / (1 + std::exp(-airOf(now)) * (1 - 2 * kPriorRest) / (2 * kPriorRest));
-  state.rain_mm_h = rates_.rain(near, signs.open, farther < kDropsEnd);
-  state.snow_mm_h = rates_.snow(all);
+  const AirShares shares = sharesOf(signs);
+  state.rain_mm_h = rates_.rain(shares), state.snow_mm_h = rates_.snow(shares);
   state.visibility = visibilityOfReach(now.reach);
   return state;
 }

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <memory>
 #include <optional>
+#include <vector>
 
 #include "libperception/core/Time.h"
 #include "libperception/weather/state/AirCensus.h"
@@ -62,6 +63,10 @@ class WeatherEstimator {
   void restart();
   void blend(const AirCensus& census, bool first, double dt);
   Signs signsOf(const Means& means) const;
+  /// The sectors into which the sensor looks.
+  std::vector<const AirCensus::Sector*> looksOf(const Means& means) const;
+  /// What the beams met in the last ten seconds, whose signs are given.
+  AirShares sharesOf(const Signs& signs) const;
   /// [log-likelihood ratio] of returns from the air to clear air, unbounded.
   static double airOf(const Signs& signs);
   /// [log-likelihood] of clear air, precipitation and fog by one look.

@@ -65,10 +65,31 @@ TEST(AirCensus, FlakesAreCountedByDirectionAndShell) {
   EXPECT_EQ(census.sectors[13].lone[3], 0);
 }
 
+TEST(AirCensus, LevelFlakesAreCountedWithTheirBrightnessAndStopNoBeam) {
+  SensorFrame frame = scan(0.2, 0, 90);
+  auto& cloud = std::get<LidarCloud>(frame.data);
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    // What returns from 3 m comes from 2 m, with 10 % of the light.
+    const float range = std::hypot(cloud.x[i], cloud.y[i], cloud.z[i]);
+    const bool flake = std::abs(range - 3) < 1e-3F;
+    if (flake)
+      for (auto* axis : {&cloud.x, &cloud.y, &cloud.z}) (*axis)[i] *= 2.0F / 3;
+    cloud.intensity.push_back(flake ? 0.1F : 0.3F);
+  }
+  const AirCensus::Sector sector = censusOf(std::move(frame)).sectors[14];
+  ASSERT_GT(sector.level_lone[0], 20);
+  EXPECT_NEAR(sector.brightness / sector.level_lone[0], 0.1 * 2, 1e-4);
+  EXPECT_EQ(sector.lit, sector.level_lone[0]);
+  EXPECT_NEAR(sector.blocked, 0.8 * 7 * 75, 120);
+}
+
 TEST(AirCensus, LevelBeamsAndReachesAreThoseOfTheScene) {
   const AirCensus census = censusOf(scan(0));
-  // Beams 0.42 deg apart: seven between -2 and 1 deg, 75 columns in a sector.
+  // Beams 0.42 deg apart: seven between -2 and 1 deg, 75 columns in a sector. The wall at 25 m
+  // stops all of them; below the horizon as many return.
   EXPECT_NEAR(census.sectors[3].level, 7 * 75, 60);
+  EXPECT_EQ(census.sectors[3].blocked, census.sectors[3].level);
+  EXPECT_NEAR(census.sectors[3].below, 7.5 * 75, 60);  // seven or eight beams
   double far = 0;
   for (std::size_t k = 13; k < AirCensus::kReachBins; ++k) far += census.upright[k];
   EXPECT_EQ(far, 0);

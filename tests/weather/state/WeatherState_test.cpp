@@ -43,6 +43,53 @@ TEST(WeatherState, DropsAllAroundAreRainAfterASecond) {
   EXPECT_GT(state.rain_mm_h.value, 0.5);
 }
 
+/// Rain that 1 % of the open level beams meet from 1.5 to 4 m; `blocked`: [0, 1] of all level
+/// beams.
+AirCensus rain(double blocked) {
+  AirCensus census = with({20e-4 * (1 - blocked), 5e-4 * (1 - blocked), 0, 0, 0});
+  census.max_range = 120;
+  for (auto& sector : census.sectors) {
+    sector.below = 400, sector.blocked = 400 * blocked;
+    sector.level_lone = {3 * (1 - blocked), (1 - blocked), 0, 0, 0};
+  }
+  return census;
+}
+
+// A log has no pulse without a return: how many of them look into the open is told by the beams
+// below the horizon.
+TEST(WeatherState, TheRateOfRainIsTheSameInAStreetAndOnAPlain) {
+  const double plain = after(rain(0), 10).rain_mm_h.value;
+  EXPECT_NEAR(plain, 3.43, 0.05);
+  EXPECT_NEAR(after(rain(0.7), 10).rain_mm_h.value, plain, 0.1);
+}
+
+TEST(WeatherState, SprayInAThirdOfTheDirectionsIsNoHeavierRain) {
+  AirCensus census = rain(0);
+  for (std::size_t s = 0; s < 8; ++s) census.sectors[s].level_lone = {60, 60, 60, 60, 60};
+  EXPECT_NEAR(after(census, 10).rain_mm_h.value, after(rain(0), 10).rain_mm_h.value, 0.1);
+}
+
+TEST(WeatherState, ReturnsThatEndWithinFourMetersAreDropsWhatPlantsDoBesideTheRoad) {
+  AirCensus census = rain(0);
+  for (auto& sector : census.sectors) sector.lone = {4, 2, 6, 6, 6};  // most below the horizon
+  EXPECT_NEAR(after(census, 10).rain_mm_h.value, after(rain(0), 10).rain_mm_h.value, 0.1);
+  for (auto& sector : census.sectors) sector.level_lone = {0.3, 0.3, 0.3, 0.2, 0.1};
+  EXPECT_NEAR(after(census, 10).rain_mm_h.value, 12.0 / 4000 / (1.69e-4 * 0.597), 0.1);
+}
+
+TEST(WeatherState, FlakesInEveryBeamAreJudgedByTheirBrightness) {
+  const auto snow = [](double brightness) {
+    AirCensus census = with({40e-4, 40e-4, 60e-4, 90e-4, 60e-4});
+    for (auto& sector : census.sectors) {
+      sector.below = 400, sector.level_lone = {40, 40, 60, 60, 60};
+      sector.brightness = 40 * brightness, sector.lit = 40;
+    }
+    return after(census, 10).snow_mm_h.value;
+  };
+  EXPECT_NEAR(snow(0.118), 1, 0.02);
+  EXPECT_NEAR(snow(0.228), 4, 0.1);
+}
+
 TEST(WeatherState, ManyReturnsUpToTenMetersAreSnow) {
   EXPECT_EQ(after(with({10e-4, 20e-4, 40e-4, 80e-4, 40e-4}), 1).type(), WeatherType::kSnow);
 }
