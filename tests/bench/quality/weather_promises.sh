@@ -171,19 +171,19 @@ camera_radar() {
 
 # 9. Clutter of the roof lidar and of the radars configured ten times too low and too high; judged from 20 s on.
 clutter() {
-  local factor found=() set label rate radars=()
-  LOG_AS=busy_street scene busy_street own
+  local seed factor found=() set label rate radars=()
   mapfile -t radars < <(sed -n 's/^\[sensor\.\(RADAR_[0-9]*\)\]$/\1/p' ini/skynet.ini | sort -u)
-  for factor in 0.1 1 10; do
+  for seed in $seeds; do for factor in 0.1 1 10; do
+    scene busy_street "$seed"
     set=()
     for label in LIDAR_TOP "${radars[@]}"; do
       rate=$(sed -n "/^\[sensor\.$label\]/,/^\[/s/^clutter_per_scan *= *\([0-9.]*\).*/\1/p" ini/skynet_shapes.ini ini/skynet.ini | head -n 1)
       [[ -z $rate ]] || set+=("sensor.$label.clutter_per_scan=$(awk -v r="$rate" -v f="$factor" 'BEGIN { print r * f }')")
     done
-    track "$log" "clutter_$factor" ini/skynet_shapes.ini L+R "${set[@]}"
+    track "$log" "clutter_${seed}_$factor" ini/skynet_shapes.ini L+R "${set[@]}"
     evaluate "$run" "${log%.rawlog}.truth.csv" --range 20 --fov-deg 360
     found+=("$run.report/instants.csv")
-  done
+  done; done
   judge clutter "${found[@]}"
 }
 
