@@ -235,7 +235,7 @@ void Pipeline::processFrame(std::size_t sensor, SensorFrame& frame) {
     }
     MeasurementScan scan = scan_maker_.measure(sensor, frame);
     const double share = conditions_.apply(sensor, scan, health_.count(sensor));
-    wakes_.apply(sensor, scan);
+    wakes_.apply(sensor, scan, conditions_.clutterRate(sensor));
     watch_.addFrame(sensor, stamp, &scan);
     for (PipelineObserver* o : observers_) o->onFrame(frame), o->onScan(scan);
     const auto returns = std::exchange(scan.returns, nullptr);

@@ -64,7 +64,7 @@ double WakeWatch::spray(std::size_t sensor, Stamp stamp) const {
   return phantoms >= kNone ? phantoms / (phantoms + kSpray) : 0;
 }
 
-void WakeWatch::apply(std::size_t sensor, MeasurementScan& scan) const {
+void WakeWatch::apply(std::size_t sensor, MeasurementScan& scan, double clutter_per_scan) const {
   if (wakes_.empty() ||
       std::none_of(seen_.begin(), seen_.end(), [](const Seen& s) { return s.phantoms >= kNone; }))
     return;
@@ -74,9 +74,8 @@ void WakeWatch::apply(std::size_t sensor, MeasurementScan& scan) const {
   const DetectionParams& params = sensors_[sensor].params;
   const double view =
       params.fov / 2 * (params.range_max * params.range_max - params.range_min * params.range_min);
-  if (seen.phantoms >= kNone && params.clutter_per_scan > 0)
-    wakes->density =
-        kMisjudged * seen.phantoms / (seen.area + kWide) / (params.clutter_per_scan / view);
+  if (seen.phantoms >= kNone && clutter_per_scan > 0)
+    wakes->density = kMisjudged * seen.phantoms / (seen.area + kWide) / (clutter_per_scan / view);
   scan.wakes = std::move(wakes);
 }
 

@@ -20,8 +20,9 @@ class WakeWatch {
   std::shared_ptr<const WakeMap> at(Stamp stamp) const;
   /// [0, 1] P(vehicles throw up spray), by the phantoms that this sensor saw in wakes lately.
   double spray(std::size_t sensor, Stamp stamp) const;
-  /// Gives a scan the wakes, if phantoms were seen in wakes lately.
-  void apply(std::size_t sensor, MeasurementScan& scan) const;
+  /// Gives a scan the wakes, if phantoms were seen in wakes lately. `clutter_per_scan`: the rate
+  /// that holds in the scan's model.
+  void apply(std::size_t sensor, MeasurementScan& scan, double clutter_per_scan) const;
   /// The scan after that; `hypothesis`: the most probable one after it.
   void add(std::size_t sensor, const MeasurementScan& scan, const Hypothesis& hypothesis);
   /// After a clock jump or when all tracks are deleted.

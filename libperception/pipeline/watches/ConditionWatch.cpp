@@ -89,6 +89,12 @@ void ConditionWatch::judge(const CRbpfTracker& tracker, State& state) {
   state.open.pop_front();
 }
 
+double ConditionWatch::clutterRate(std::size_t sensor) const {
+  const DetectionParams& params = sensors_[sensor].params;
+  return params.clutter == DetectionParams::Clutter::kLearnt ? states_[sensor].map->rate()
+                                                             : params.clutter_per_scan;
+}
+
 std::vector<std::string> ConditionWatch::learned() const {
   std::vector<std::string> lines;
   for (std::size_t k = 0; k < states_.size(); ++k) {

@@ -32,6 +32,8 @@ class ConditionWatch {
   std::shared_ptr<const ClutterMap> clutter(std::size_t sensor) const {
     return states_[sensor].map;
   }
+  /// [1/scan] of false measurements by which its scans are judged: learned or as configured.
+  double clutterRate(std::size_t sensor) const;
   /// The learned rates of the whole views, where learned ones hold: INI lines, section by section.
   std::vector<std::string> learned() const;
   /// After a clock jump or when all tracks are deleted: forgets the scans that are not yet judged.

@@ -20,6 +20,7 @@ struct World {
   ClassTable classes = carsAlone();
   std::vector<PipelineSetup::Sensor> sensors = std::vector<PipelineSetup::Sensor>(2);
   WakeWatch watch{sensors, classes};
+  double clutter_per_scan = sensors[0].params.clutter_per_scan;
 
   MeasurementScan scanAt(double t, const std::vector<Vector2>& phantoms) const {
     MeasurementScan scan;
@@ -49,7 +50,7 @@ struct World {
                         std::size_t sensor = 0) {
     for (int k = 0; k < 20; ++k) watch.add(0, scanAt(0.1 * k, phantoms), carAt(0.1 * k, speed));
     MeasurementScan scan = scanAt(2, {});
-    watch.apply(sensor, scan);
+    watch.apply(sensor, scan, clutter_per_scan);
     return scan;
   }
 };
@@ -59,6 +60,15 @@ TEST(WakeWatch, PhantomsBehindAVehicleMakeItsWakeOneOfPhantoms) {
   ASSERT_TRUE(scan.wakes);
   EXPECT_GT(scan.wakes->density, 1);
   EXPECT_TRUE(scan.wakes->age({30, 0}, scan.state.stamp));
+}
+
+// The filter multiplies the density of clutter by one more than this: where that is learned to be
+// ten times the configured one, phantoms are no more frequent for it.
+TEST(WakeWatch, PhantomsAreAsFrequentWhateverTheClutter) {
+  const double few = World().after(20, {{10, 0}}).wakes->density;
+  World loud;
+  loud.clutter_per_scan *= 10;
+  EXPECT_NEAR(loud.after(20, {{10, 0}}).wakes->density, few / 10, 1e-9 * few);
 }
 
 TEST(WakeWatch, InClearAirThereAreNoWakes) {
@@ -90,7 +100,7 @@ TEST(WakeWatch, ARestartForgetsTheWakes) {
   world.after(20, {{10, 0}});
   world.watch.restart();
   MeasurementScan scan = world.scanAt(2, {});
-  world.watch.apply(0, scan);
+  world.watch.apply(0, scan, world.clutter_per_scan);
   EXPECT_FALSE(scan.wakes);
 }
 

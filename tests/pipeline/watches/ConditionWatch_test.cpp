@@ -62,15 +62,18 @@ struct WatchedWorld {
       if (last) *last = scan;
     }
     learned = watch.learned();
+    rate = watch.clutterRate(0);
     return watch.clutter(0)->rate();
   }
   std::vector<std::string> learned;
+  double rate = 0;  ///< by which scans are judged
 };
 
 TEST(ConditionWatch, ClutterMissetByTenEitherWayIsLearnedInTwentySeconds) {
   for (const double configured : {0.3, 3.0, 30.0}) {
     WatchedWorld world(DetectionParams::Clutter::kLearnt, configured);
     EXPECT_NEAR(world.run(20), kTrueClutter, 0.6) << configured;
+    EXPECT_NEAR(world.rate, kTrueClutter, 0.6) << configured;
     ASSERT_EQ(world.learned.size(), 2U);
     EXPECT_EQ(world.learned[0], "[sensor.POSITION]");
   }
@@ -84,6 +87,7 @@ TEST(ConditionWatch, FixedClutterStaysInTheModel) {
   const Measurement& m = last.measurements.front();
   EXPECT_NEAR(last.model->logClutterDensity(m, last.state), std::log(30 / (kPi * 40 * 40)), 1e-9);
   EXPECT_TRUE(world.learned.empty());
+  EXPECT_EQ(world.rate, 30);
 }
 
 TEST(ConditionWatch, LearnedClutterIsInTheModelOfTheScan) {
