@@ -140,14 +140,15 @@ double RadarModel::detectionProbability(ClassId c, const Kinematics& object, con
   const double middle = wrapAngle(std::atan2(d.y(), d.x()) - yawOf(sensor.T_world_sensor));
   AxisPrediction outline;
   footprint_.predict(&object, &extent, 1, sensor, &outline);
-  double bearing = middle;
+  double bearing = middle, nearest = 0;  // not defined: the sensor is inside the outline
   if (outline.defined) {
+    nearest = outline.h[FootprintModel::kRange];
     const double left = middle + wrapAngle(outline.h[FootprintModel::kLeft] - middle);
     const double right = middle + wrapAngle(outline.h[FootprintModel::kRight] - middle);
     bearing = std::clamp(0.0, right, left);
   }
   const double range = std::max(0.0, d.norm() - 0.25 * (extent.length + extent.width));
-  return edgeShare(bearing) *
+  return edgeShare(bearing) * nearShare(nearest) *
          detection_model().detection(c, range, 0, 1 - occluded * (1 - params_.occluded_detection));
 }
 
@@ -157,6 +158,11 @@ double RadarModel::edgeShare(double bearing) const {
   if (fov >= kTwoPi) return 1;
   const double inside = (0.5 * fov - std::abs(wrapAngle(bearing))) / params_.view_edge;
   return inside < -kFaded ? 0 : 0.5 * std::erfc(-inside / std::sqrt(2.0));
+}
+
+double RadarModel::nearShare(double nearest) const {
+  constexpr double kFade = 1, kLeast = 0.01;  // [m], of a return that noise carries past range_min
+  return std::clamp((nearest - detection_model().params().range_min) / kFade, kLeast, 1.0);
 }
 
 bool RadarModel::mayDetect(const Vector2& position, double reach, const SensorState& sensor) const {

@@ -76,6 +76,9 @@ class RadarModel final : public MeasurementModel {
  private:
   /// Factor of P_D at a bearing [rad] of the outline, from view_edge.
   double edgeShare(double bearing) const;
+  /// Factor of P_D where the nearest point of the outline, which the radar measures, is about as
+  /// near as range_min [m]: it rises from there on within a meter (assumed).
+  double nearShare(double nearest) const;
   /// Whether the class of object i of a batch (whole banks) has a heading.
   bool isWheeled(std::size_t i) const {
     return classes_.classes[i % classes_.classes.size()].motion->has_heading;
