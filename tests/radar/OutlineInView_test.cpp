@@ -143,5 +143,23 @@ TEST(RadarModel, WhatReachesIntoTheBeamIsDetected) {
   EXPECT_LT(detection(8.6), 0.4);
 }
 
+TEST(RadarModel, AVehicleAtTheBumperIsTooNearToBeDetected) {
+  DetectionParams p;
+  p.modality = Modality::kRadar;
+  p.fov = 2 * kHalf;
+  p.range_min = 1;
+  ObjectClass car;
+  car.name = "car";
+  const RadarModel model({{car}}, DetectionModel(p, {{}}, {"target"}), {});
+  const Extent e{4.5, 1.8, 0, 0};
+  const auto detected = [&](double gap) {  // [m] from the radar to the rear of the vehicle ahead
+    return model.detectionProbability(0, objectAt(gap + e.length / 2, 0, 0), e, SensorState(), 1);
+  };
+  EXPECT_NEAR(detected(10), 0.9, 1e-3);
+  EXPECT_NEAR(detected(2.5), 0.9, 1e-3);
+  EXPECT_NEAR(detected(1.5), 0.45, 0.01);
+  EXPECT_LT(detected(0.5), 0.02);
+}
+
 }  // namespace
 }  // namespace perception

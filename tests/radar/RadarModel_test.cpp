@@ -23,9 +23,8 @@ ClassTable classes() {
   return {{car, post}};
 }
 
-RadarModel model(RadarModelParams params = {}, double range_min = 0) {
+RadarModel model(RadarModelParams params = {}) {
   DetectionParams p;
-  p.range_min = range_min;
   p.modality = Modality::kRadar;
   p.clutter_per_scan = 0.3;
   p.births_per_scan = 0.05;
@@ -285,24 +284,6 @@ TEST(RadarModel, WhatALidarFindsHiddenIsStillDetected) {
   const double open = model().detectionProbability(0, k, e, s, 1);
   EXPECT_GT(open, 0.5);
   EXPECT_NEAR(model().detectionProbability(0, k, e, s, 0), 0.5 * open, 1e-12);
-}
-
-TEST(RadarModel, AVehicleAtTheBumperIsTooNearToBeDetected) {
-  const SensorState s = drivingSensor();
-  const double forward = yawOf(s.T_world_sensor);
-  const Extent e{4.5, 1.8, 0, 0};
-  const auto detected = [&](double gap) {  // [m] from the radar to the rear of the vehicle ahead
-    Kinematics k;
-    k.q.head<2>() = s.T_world_sensor.translation().head<2>() +
-                    (gap + e.length / 2) * Vector2(std::cos(forward), std::sin(forward));
-    k.q[4] = forward, k.has_yaw = true;
-    return model({}, 1).detectionProbability(0, k, e, s, 1);
-  };
-  const double full = detected(10);
-  EXPECT_GT(full, 0.5);
-  EXPECT_NEAR(detected(2.5), full, 1e-6);
-  EXPECT_NEAR(detected(1.5), 0.5 * full, 0.02);  // 1 m is range_min
-  EXPECT_LT(detected(0.5), 0.02);
 }
 
 }  // namespace
