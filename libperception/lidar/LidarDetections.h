@@ -8,6 +8,7 @@
 #include "libperception/lidar/EgoPoints.h"
 #include "libperception/lidar/classification/ClusterKind.h"
 #include "libperception/lidar/ground/GroundSurface.h"
+#include "libperception/lidar/segments/LidarField.h"
 #include "libperception/lidar/two_spacings/Clusters.h"
 #include "libperception/lidar/two_spacings/PersonPeaks.h"
 #include "libperception/measurement/frames/ClusterVerdicts.h"
@@ -46,7 +47,8 @@ struct LidarDetections {
   std::vector<std::uint8_t> ground;  ///< per return of the frame's cloud: 1 = ground
   std::vector<JudgedCluster> judged;        ///< with a classifier, in place of clusters and persons
   std::optional<ClusterVerdicts> verdicts;  ///< with a classifier
-  GroundSurface surface;                    ///< the local ground
+  LidarField field;       ///< with a classifier, by azimuth in ego axes; without, the whole circle
+  GroundSurface surface;  ///< the local ground
 };
 
 }  // namespace perception

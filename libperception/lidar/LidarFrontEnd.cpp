@@ -189,6 +189,7 @@ LidarDetections LidarFrontEnd::detect(const SensorFrame& frame) const {
     found.judged = std::move(judgement.clusters);
     found.phantom = std::move(judgement.phantom);
     found.verdicts = std::move(judgement.verdicts);
+    found.field = cells->field();
   }
   if (frame.causes.any()) describeSolid(frame, *cloud, obstacles, *cells, found);
   if (classifier_) return found;

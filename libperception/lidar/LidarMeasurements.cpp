@@ -55,6 +55,8 @@ Outline outlineInWorld(const ScanContext& scan, const std::vector<Vector2>& hull
   markHiddenEdges(outline, scan.occlusion, scan.T_world_sensor,
                   scan.params.obstacles.occluder_margin, scan.params.obstacles.occluder_bin,
                   scan.fov);
+  markEdgesOfField(outline, scan.found.field, yawOf(scan.frame.T_ego_sensor),
+                   scan.params.obstacles.occluder_bin);
   return outline;
 }
 

@@ -27,7 +27,7 @@ struct CellCounts {
   int total = 0;                       ///< between the first and the last hit of each row
   int holes = 0;                       ///< of those without a return of the cluster
   int through = 0;                     ///< holes with a return behind it
-  int cut = 0;                         ///< beside the ends of the rows, with a return before it
+  int cut = 0;  ///< beside the rows' ends: a return before it, or not looked at
 };
 
 void addCells(const CellCounts& n, float range, Descriptor& d) {
@@ -164,7 +164,8 @@ void ClusterDescriber::describeDirections(const Members& cluster,
       n.through += cells_.at(origin + c, height).farthest > range + 1;
     }
     for (const int beside : {row.low - 1, row.high + 1})
-      n.cut += cells_.at(origin + beside, height).nearest < range - 0.7f;
+      n.cut += cells_.at(origin + beside, height).nearest < range - 0.7f ||
+               !cells_.field().has(origin + beside);
   }
   n.columns = static_cast<int>(std::count(column_hit.begin(), column_hit.end(), 1));
   addCells(n, range, d);

@@ -44,6 +44,11 @@ void markHiddenEdges(Outline& outline, const OcclusionMap& occlusion, const Pose
   outline.right_hidden = hiddenBeside(outline.right, outline.right_range, -step);
 }
 
+void markEdgesOfField(Outline& outline, const LidarField& field, double yaw, double step) {
+  outline.left_hidden |= !field.hasAzimuth(yaw + outline.left + 2 * step);
+  outline.right_hidden |= !field.hasAzimuth(yaw + outline.right - 2 * step);
+}
+
 void fillFootprint(const Outline& outline, double sigma_left, double sigma_right,
                    double sigma_range, const PoseUncertainty& pose, double sensor_yaw,
                    Measurement& m) {

@@ -2,6 +2,7 @@
 #include <vector>
 
 #include "libperception/core/Frames.h"
+#include "libperception/lidar/segments/LidarField.h"
 #include "libperception/measurement/models/FootprintModel.h"
 
 namespace perception {
@@ -13,7 +14,7 @@ struct Outline {
   double nearest = 0;                            ///< [m] range of the nearest point
   Vector2 nearest_direction = Vector2::UnitX();  ///< unit vector to it, world
   bool left_hidden = false,
-       right_hidden = false;  ///< an occluder lies just outside the edge
+       right_hidden = false;  ///< an occluder, or no field, just outside the edge
 };
 
 /// Outline of a hull (world, [m]) seen from the sensor, which must be outside the hull.
@@ -23,6 +24,10 @@ Outline outlineOf(const std::vector<Vector2>& hull, const Pose3& T_world_sensor)
 /// the border of the field of view `fov` [rad]; `step` [rad] is the bin of the occlusion map.
 void markHiddenEdges(Outline& outline, const OcclusionMap& occlusion, const Pose3& T_world_sensor,
                      double margin, double step, double fov);
+
+/// Marks edges as hidden beyond which, within two steps [rad], the lidar does not look; `yaw` [rad]
+/// of the sensor in the axes of the field.
+void markEdgesOfField(Outline& outline, const LidarField& field, double yaw, double step);
 
 /// z and R of FootprintModel's axes from an outline: noise of the edges (standard deviations [rad,
 /// rad, m]) and of the ego pose (J P J', method.md 1.3, which correlates the axes).

@@ -39,6 +39,13 @@ PERCEPTION_WIDEST void placePoints(const float* __restrict x, const float* __res
   }
 }
 
+/// Of each column whether a row has a return; `farthest` is row by row, 0 without a return.
+PERCEPTION_WIDEST void findColumns(const float* __restrict farthest, std::uint8_t* __restrict any) {
+  for (int row = 0; row < DirectionCells::kRows; ++row, farthest += DirectionCells::kColumns)
+    for (int column = 0; column < DirectionCells::kColumns; ++column)
+      any[column] = static_cast<std::uint8_t>(any[column] | (farthest[column] > 0));
+}
+
 }  // namespace
 
 DirectionCells::DirectionCells(const EgoPoints& points)
@@ -59,6 +66,9 @@ DirectionCells::DirectionCells(const EgoPoints& points)
       farthest_[cell] = std::max(farthest_[cell], range_[i]);
     }
   }
+  std::vector<std::uint8_t> any(kColumns, 0);
+  findColumns(farthest_.data(), any.data());
+  field_ = LidarField(any);
 }
 
 }  // namespace perception

@@ -37,7 +37,7 @@ FunctionFrontEnd::FunctionFrontEnd(std::shared_ptr<const DetectFunction> detect,
                                    std::unique_ptr<FrontEnd> positions)
     : detect_(std::move(detect)), positions_(std::move(positions)) {
   SensorFrame nothing;
-  nothing.data = ObjectDetections{};
+  nothing.data.emplace<ObjectDetections>();
   const MeasurementScan scan = positions_->extract(nothing);
   modality_ = scan.modality;
   model_ = scan.model;

@@ -115,6 +115,14 @@ TEST(ClusterDescriptor, WhatStandsBeforeAnEndCutsIt) {
       << "of its two ends";
 }
 
+TEST(ClusterDescriptor, TheEdgeOfTheFieldCutsAnEnd) {
+  SolidScene scene;
+  scene.boxes = {van(12.9, 6.5)};  // to 8.7 m on the left, seen to 30 degrees: 6.9 m
+  EXPECT_NEAR(value(ObstacleScan(scene).describe(11, 14, 3, 9), Feature::kCut), 0.5, 0.06);
+  scene.boxes = {van(12.9, 4)};
+  EXPECT_EQ(value(ObstacleScan(scene).describe(11, 14, 1, 9), Feature::kCut), 0);
+}
+
 TEST(ClusterDescriptor, IsolationIsTheDistanceToTheNextObstacle) {
   SolidScene scene;
   scene.boxes = {van(10.9, 0)};

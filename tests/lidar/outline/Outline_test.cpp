@@ -56,6 +56,18 @@ TEST(Outline, AnEdgeAtTheBorderOfTheViewIsHidden) {
   EXPECT_TRUE(outline.left_hidden && outline.right_hidden);
 }
 
+TEST(Outline, AnEdgeBesideWhichTheScanHasNoReturnsIsHidden) {
+  const double step = radians(0.4);
+  Outline outline = outlineOf(kSquare, Pose3::Identity());
+  const double turn = 1;  // of the sensor in the vehicle
+  std::vector<std::uint8_t> any(900, 1);
+  const auto first = static_cast<std::size_t>((turn + outline.left + step) / step);
+  for (std::size_t k = first; k < first + 100; ++k) any[k] = 0;
+  markEdgesOfField(outline, LidarField(any), turn, step);
+  EXPECT_TRUE(outline.left_hidden);
+  EXPECT_FALSE(outline.right_hidden);
+}
+
 TEST(Outline, CovarianceIsNoisePlusPoseByNumericDerivatives) {
   const PoseUncertainty pose;
   const Pose3 sensor = makePose(1, 2, 1.7, 0.4);

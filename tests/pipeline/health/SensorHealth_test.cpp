@@ -245,7 +245,8 @@ TEST(SensorHealth, ARadarThatNoLongerSeesAStandingObjectThatItSawIsBlind) {
 
 TEST(SensorHealth, ASensorThatRepeatsItsLastFrameOnTheWayIsBlindUntilItsPictureChanges) {
   HealthWatched w;
-  RadarReturns some{{RadarReturn{20}}};
+  RadarReturns some;
+  some.returns.emplace_back().range = 20;
   for (int k = 0; k <= 12; ++k) w.see(kRadarHealth, 0.1 * k, some, 0, k);
   EXPECT_EQ(w.count(event_kind::kSensorBlind), 1U);
   some.returns[0].range = 21;

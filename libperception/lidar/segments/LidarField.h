@@ -1,0 +1,30 @@
+#pragma once
+#include <cstdint>
+#include <vector>
+
+namespace perception {
+
+/// The azimuths in which a scan has returns at any elevation. A wide gap between them lies outside
+/// the lidar's field of view, behind what is mounted beside it, or was cut out of the recording:
+/// what stands there is not seen, and what ends there may go on.
+class LidarField {
+ public:
+  /// [rad] least gap without any return (assumed: what absorbs the beams of all elevations, also
+  /// those on the ground, is narrower)
+  static constexpr double kLeastGap = 0.17;
+
+  /// The whole circle.
+  LidarField() = default;
+  /// `any` of equal columns, counter-clockwise from azimuth 0 on: whether one has a return.
+  explicit LidarField(const std::vector<std::uint8_t>& any);
+
+  /// Whether the lidar looks there; columns wrap around.
+  bool has(int column) const;
+  /// The same of an azimuth [rad] about the sensor, in the axes of the columns.
+  bool hasAzimuth(double azimuth) const;
+
+ private:
+  std::vector<std::uint8_t> outside_;  ///< of the columns; empty: the whole circle
+};
+
+}  // namespace perception
