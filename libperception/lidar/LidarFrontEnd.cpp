@@ -184,12 +184,12 @@ LidarDetections LidarFrontEnd::detect(const SensorFrame& frame) const {
   std::optional<DirectionCells> cells;
   if (classifier_ || frame.causes.any()) cells.emplace(found.points);
   if (classifier_) {
+    found.field = fieldOf(*cells, found.height, obstacles.height_min);
     Judgement judgement =
         judgedClusters(found, *cloud, *cells, *classifier_, causesOf(frame), reach_);
     found.judged = std::move(judgement.clusters);
     found.phantom = std::move(judgement.phantom);
     found.verdicts = std::move(judgement.verdicts);
-    found.field = cells->field();
   }
   if (frame.causes.any()) describeSolid(frame, *cloud, obstacles, *cells, found);
   if (classifier_) return found;

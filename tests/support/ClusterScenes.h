@@ -50,7 +50,9 @@ struct ObstacleScan {
   LidarDetections found;
 
   explicit ObstacleScan(const SolidScene& scene, const SpinningLidar& lidar = narrowLidar())
-      : frame(castScan(scene, lidar)), found(plainFrontEnd().detect(frame)) {}
+      : frame(castScan(scene, lidar)), found(plainFrontEnd().detect(frame)) {
+    found.field = fieldOf(DirectionCells(found.points), found.height, ObstacleParams().height_min);
+  }
 
   LidarCloud& cloud() { return std::get<LidarCloud>(frame.data); }
   std::vector<std::uint32_t> within(double x0, double x1, double y0, double y1) const {

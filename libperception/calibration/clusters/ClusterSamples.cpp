@@ -116,10 +116,12 @@ void ClusterSampler::onFrame(const SensorFrame& frame) {
       std::find_if(truth_.instants.begin(), truth_.instants.end(),
                    [&](const GroundTruth::Instant& i) { return i.frame == frame.frame; });
   if (!labels && instant == truth_.instants.end()) return;
-  const LidarDetections found = front_end_.detect(frame);
+  LidarDetections found = front_end_.detect(frame);
+  const DirectionCells cells(found.points);
+  found.field = fieldOf(cells, found.height, front_end_.params().obstacles.height_min);
   const std::size_t first = samples_.clusters.size();
   points_.clear();
-  for (DescribedCluster& cluster : describedClusters(found, *cloud, DirectionCells(found.points))) {
+  for (DescribedCluster& cluster : describedClusters(found, *cloud, cells)) {
     Segment& segment = cluster.segment;
     ClusterSample sample;
     sample.log = log_, sample.frame = frame.frame, sample.t = frame.stamp - *first_;

@@ -165,7 +165,7 @@ void ClusterDescriber::describeDirections(const Members& cluster,
     }
     for (const int beside : {row.low - 1, row.high + 1})
       n.cut += cells_.at(origin + beside, height).nearest < range - 0.7f ||
-               !cells_.field().has(origin + beside);
+               !found_.field.has(origin + beside);
   }
   n.columns = static_cast<int>(std::count(column_hit.begin(), column_hit.end(), 1));
   addCells(n, range, d);

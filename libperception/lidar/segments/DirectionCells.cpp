@@ -66,9 +66,12 @@ DirectionCells::DirectionCells(const EgoPoints& points)
       farthest_[cell] = std::max(farthest_[cell], range_[i]);
     }
   }
+}
+
+std::vector<std::uint8_t> DirectionCells::columnsWithReturns() const {
   std::vector<std::uint8_t> any(kColumns, 0);
   findColumns(farthest_.data(), any.data());
-  field_ = LidarField(any);
+  return any;
 }
 
 }  // namespace perception

@@ -6,7 +6,6 @@
 
 #include "libperception/core/math/Angle.h"
 #include "libperception/lidar/EgoPoints.h"
-#include "libperception/lidar/segments/LidarField.h"
 #include "libperception/simd/RawVector.h"
 
 namespace perception {
@@ -47,8 +46,8 @@ class DirectionCells {
   /// The farthest ranges [m] of a cell and those after it in its row; 0: no return. Eight may be
   /// read, of which those beyond the row's end belong to other directions.
   const float* farthestFrom(int column, int row) const { return &farthest_[indexOf(column, row)]; }
-  /// By the columns.
-  const LidarField& field() const { return field_; }
+  /// 1 for each column in which a row has a return, else 0.
+  std::vector<std::uint8_t> columnsWithReturns() const;
 
  private:
   static constexpr std::size_t kReadBeyond = 8;  ///< cells after the last, without return
@@ -59,7 +58,6 @@ class DirectionCells {
   RawVector<Place> place_;                 ///< of the points
   RawVector<float> range_;                 ///< of the points
   std::vector<float> nearest_, farthest_;  ///< row by row
-  LidarField field_;
 };
 
 }  // namespace perception

@@ -1,5 +1,6 @@
 #include "libperception/lidar/segments/LidarField.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "libperception/core/math/Angle.h"
@@ -36,6 +37,20 @@ bool LidarField::has(int column) const {
 bool LidarField::hasAzimuth(double azimuth) const {
   if (outside_.empty()) return true;
   return has(static_cast<int>(std::floor(azimuth / kTwoPi * static_cast<double>(outside_.size()))));
+}
+
+LidarField fieldOf(const DirectionCells& cells, const std::vector<float>& height, double ground) {
+  const std::vector<std::uint8_t> any = cells.columnsWithReturns();
+  LidarField field(any);
+  if (field.isWhole()) return field;
+  std::vector<std::uint8_t> low(any.size(), 0);
+  for (std::size_t i = 0; i < height.size(); ++i)
+    if (height[i] < static_cast<float>(ground))
+      low[static_cast<std::size_t>(cells.placeOf(i).column)] = 1;
+  const auto columns = [](const std::vector<std::uint8_t>& v) {
+    return std::count(v.begin(), v.end(), 1);
+  };
+  return 2 * columns(low) < columns(any) ? LidarField() : field;
 }
 
 }  // namespace perception

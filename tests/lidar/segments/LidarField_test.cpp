@@ -75,5 +75,15 @@ TEST(LidarField, ACarThatReachesBeyondItHasAnEndThatIsNotSeen) {
   EXPECT_FALSE(car.sides->length_complete);
 }
 
+TEST(LidarField, IsNotToldByAScanThatHoldsObjectsAlone) {
+  test::SolidScene scene;
+  scene.boxes = {{{12, 0}, kPi / 2, 4.4, 1.8, 0.25, 1.5}};
+  test::ObstacleScan whole(scene);
+  EXPECT_FALSE(whole.found.field.isWhole());
+  const DirectionCells cells(whole.found.points);
+  EXPECT_FALSE(fieldOf(cells, whole.found.height, 0.25).isWhole());
+  EXPECT_TRUE(fieldOf(cells, whole.found.height, -1).isWhole()) << "nothing counts as ground";
+}
+
 }  // namespace
 }  // namespace perception
