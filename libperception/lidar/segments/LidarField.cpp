@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "libperception/core/math/Angle.h"
-
 namespace perception {
 
 LidarField::LidarField(const std::vector<std::uint8_t>& any) {

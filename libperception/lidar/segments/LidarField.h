@@ -2,6 +2,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "libperception/core/math/Angle.h"
 #include "libperception/lidar/segments/DirectionCells.h"
 
 namespace perception {
@@ -11,9 +12,9 @@ namespace perception {
 /// what stands there is not seen, and what ends there may go on.
 class LidarField {
  public:
-  /// [rad] least gap without any return (assumed: what absorbs the beams of all elevations, also
-  /// those on the ground, is narrower)
-  static constexpr double kLeastGap = 0.17;
+  /// [rad] 30 degrees: least gap without any return (assumed: what absorbs the beams of all
+  /// elevations, also those on the ground, is narrower)
+  static constexpr double kLeastGap = kPi / 6;
 
   /// The whole circle.
   LidarField() = default;
