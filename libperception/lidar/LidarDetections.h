@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "libperception/lidar/EgoPoints.h"
-#include "libperception/lidar/classification/ClusterKind.h"
+#include "libperception/lidar/description/ClusterKind.h"
 #include "libperception/lidar/ground/GroundSurface.h"
 #include "libperception/lidar/segments/LidarField.h"
 #include "libperception/lidar/two_spacings/Clusters.h"

@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "libperception/calibration/clusters/PointLabels.h"
-#include "libperception/lidar/segments/SpaceLinkage.h"
+#include "libperception/lidar/linkage/SpaceLinkage.h"
 
 namespace perception {
 namespace {

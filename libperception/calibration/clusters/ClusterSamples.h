@@ -8,7 +8,7 @@
 #include "libperception/calibration/clusters/PointLabels.h"
 #include "libperception/core/GroundTruth.h"
 #include "libperception/lidar/LidarFrontEnd.h"
-#include "libperception/lidar/classification/ClusterKind.h"
+#include "libperception/lidar/description/ClusterKind.h"
 #include "libperception/lidar/description/DescribedClusters.h"
 #include "libperception/pipeline/Pipeline.h"
 

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "libperception/lidar/classification/ClusterKind.h"
 #include "libperception/lidar/description/ClusterDescriptor.h"
+#include "libperception/lidar/description/ClusterKind.h"
 #include "libperception/measurement/objects/EvidenceMemory.h"
 
 namespace perception {

@@ -1,7 +1,7 @@
 #pragma once
 #include <array>
 
-#include "libperception/lidar/classification/ClusterKind.h"
+#include "libperception/lidar/description/ClusterKind.h"
 #include "libperception/measurement/frames/PhantomCauses.h"
 
 namespace perception {

@@ -3,8 +3,8 @@
 #include <functional>
 #include <vector>
 
-#include "libperception/lidar/classification/ClusterKind.h"
 #include "libperception/lidar/description/ClusterDescriptor.h"
+#include "libperception/lidar/description/ClusterKind.h"
 #include "libperception/lidar/segments/Segments.h"
 
 namespace perception {

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <utility>
 
-#include "libperception/lidar/two_spacings/PointFours.h"
+#include "libperception/lidar/outline/PointFours.h"
 #include "libperception/simd/Dispatch.h"
 #include "libperception/simd/Vector8.h"
 

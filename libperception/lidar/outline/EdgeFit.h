@@ -1,5 +1,5 @@
 #pragma once
-#include "libperception/lidar/two_spacings/PointFours.h"
+#include "libperception/lidar/outline/PointFours.h"
 
 namespace perception {
 

@@ -6,7 +6,7 @@
 #include <optional>
 
 #include "libperception/core/math/Angle.h"
-#include "libperception/lidar/segments/Forest.h"
+#include "libperception/lidar/linkage/Forest.h"
 #include "libperception/measurement/models/FootprintInView.h"
 
 namespace perception {

@@ -7,8 +7,8 @@
 #include <utility>
 
 #include "libperception/core/math/Angle.h"
+#include "libperception/lidar/linkage/SpaceLinkage.h"
 #include "libperception/lidar/segments/GrazedSurfaces.h"
-#include "libperception/lidar/segments/SpaceLinkage.h"
 #include "libperception/simd/Dispatch.h"
 #include "libperception/simd/RawVector.h"
 

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "libperception/lidar/linkage/Linkage.h"
 #include "libperception/lidar/outline/BoxFit.h"
-#include "libperception/lidar/two_spacings/Linkage.h"
 
 namespace perception {
 

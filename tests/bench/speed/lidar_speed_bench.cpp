@@ -21,7 +21,7 @@
 #include "libperception/lidar/ground/SplitGround.h"
 #include "libperception/lidar/two_spacings/PersonResponse.h"
 #include "tests/bench/speed/LidarScans.h"
-#include "tests/lidar/two_spacings/FarPartition.h"
+#include "tests/lidar/linkage/FarPartition.h"
 
 namespace perception::bench {
 namespace {

@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "libperception/lidar/two_spacings/Linkage.h"
+#include "libperception/lidar/linkage/Linkage.h"
 
 namespace perception {
 

@@ -1,4 +1,4 @@
-#include "libperception/lidar/two_spacings/Linkage.h"
+#include "libperception/lidar/linkage/Linkage.h"
 
 #include <algorithm>
 #include <array>
@@ -7,8 +7,8 @@
 #include <numeric>
 #include <utility>
 
-#include "libperception/lidar/segments/Forest.h"
-#include "libperception/lidar/two_spacings/LinkageCells.h"
+#include "libperception/lidar/linkage/Forest.h"
+#include "libperception/lidar/linkage/LinkageCells.h"
 
 namespace perception {
 

@@ -1,4 +1,4 @@
-#include "libperception/lidar/two_spacings/Linkage.h"
+#include "libperception/lidar/linkage/Linkage.h"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,7 @@
 #include <numeric>
 
 #include "libperception/core/math/Random.h"
-#include "tests/lidar/two_spacings/FarPartition.h"
+#include "tests/lidar/linkage/FarPartition.h"
 
 namespace perception {
 namespace {

@@ -1,5 +1,5 @@
 #pragma once
-#include "libperception/lidar/two_spacings/Linkage.h"
+#include "libperception/lidar/linkage/Linkage.h"
 
 namespace perception::test {
 

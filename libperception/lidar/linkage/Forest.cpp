@@ -1,4 +1,4 @@
-#include "libperception/lidar/segments/Forest.h"
+#include "libperception/lidar/linkage/Forest.h"
 
 namespace perception {
 

@@ -1,4 +1,4 @@
-#include "libperception/lidar/segments/SpaceLinkage.h"
+#include "libperception/lidar/linkage/SpaceLinkage.h"
 
 #include <gtest/gtest.h>
 

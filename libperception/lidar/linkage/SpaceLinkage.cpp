@@ -1,4 +1,4 @@
-#include "libperception/lidar/segments/SpaceLinkage.h"
+#include "libperception/lidar/linkage/SpaceLinkage.h"
 
 #include <algorithm>
 #include <array>
@@ -6,8 +6,8 @@
 #include <memory>
 #include <numeric>
 
-#include "libperception/lidar/segments/Forest.h"
-#include "libperception/lidar/segments/KeyNumbers.h"
+#include "libperception/lidar/linkage/Forest.h"
+#include "libperception/lidar/linkage/KeyNumbers.h"
 #include "libperception/simd/Dispatch.h"
 #include "libperception/simd/RawVector.h"
 #include "libperception/simd/Vector8.h"

@@ -1,4 +1,4 @@
-#include "libperception/lidar/two_spacings/LinkageCells.h"
+#include "libperception/lidar/linkage/LinkageCells.h"
 
 #include <algorithm>
 #include <array>
