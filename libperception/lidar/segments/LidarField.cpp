@@ -8,7 +8,7 @@ namespace perception {
 LidarField::LidarField(const std::vector<std::uint8_t>& any) {
   const std::size_t columns = any.size();
   const auto least =
-      static_cast<std::size_t>(std::ceil(kLeastGap / kTwoPi * static_cast<double>(columns)));
+      static_cast<std::size_t>(std::lround(kLeastGap / kTwoPi * static_cast<double>(columns)));
   std::size_t first = 0;  // a column with returns, from which on the circle is gone around
   while (first < columns && any[first] == 0) ++first;
   if (first == columns) return;

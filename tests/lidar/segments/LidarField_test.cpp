@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "libperception/core/math/Angle.h"
 #include "tests/support/ClusterScenes.h"
@@ -50,7 +51,7 @@ TEST(LidarField, HasGapsOnEitherSideOfTheVehicle) {
 }
 
 TEST(LidarField, ANarrowGapIsOfWhatReturnsNothing) {
-  const int least = static_cast<int>(LidarField::kLeastGap / kTwoPi * kColumns) + 1;
+  const auto least = std::lround(LidarField::kLeastGap / kTwoPi * kColumns);
   std::vector<std::uint8_t> any(kColumns, 1);
   std::fill_n(any.begin() + 100, least - 1, 0);
   EXPECT_TRUE(LidarField(any).has(100));
