@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "libperception/lidar/classification/CloudedSurfaces.h"
 #include "libperception/lidar/classification/PhantomPrior.h"
 #include "libperception/lidar/classification/VehiclePieces.h"
 #include "libperception/lidar/outline/BoxFit.h"
@@ -40,6 +41,9 @@ constexpr double kSurelyThing = -2;
 constexpr double kSurePhantom = 0.7, kHardlyRoadUser = 0.05;
 /// P(phantom) above which a cluster that is kept counts as suspicious: more likely one than not.
 constexpr double kSuspicious = 0.5;
+/// Where the air is likely not clear, P(phantom) from which a cluster may be a surface with what is
+/// in the air about it (assumed).
+constexpr double kNotClear = 0.5, kPerhapsPhantom = 0.2;
 constexpr float kDoubted = 0.5f;  // trust of a return below which it is doubted
 
 /// Largest road users [m], longer and shorter side, with what returns beside them add: people with
@@ -195,6 +199,48 @@ std::vector<char> standing(const std::vector<DescribedCluster>& clusters) {
   return stands;
 }
 
+/// The clusters of a scan that may be road users, as they are found.
+class Handing {
+ public:
+  Handing(const ClusterClassifier& classifier, std::vector<JudgedCluster>& judged)
+      : classifier_(classifier), prior_(classifier.prior()), judged_(judged) {}
+
+  /// A classifier's probabilities where something may make phantoms.
+  Probabilities among(const DescribedCluster& c, const CausesHere& causes) const {
+    return prior_(c.probabilities, causes);
+  }
+
+  void add(DescribedCluster& described, const Probabilities& p, const CausesHere& causes) {
+    JudgedCluster cluster;
+    cluster.phantom = at(p, ClusterKind::kPhantom);
+    cluster.looks_phantom = classifier_.phantomEvidence(described.probabilities);
+    cluster.cause = std::max({causes.weather, causes.cloud, causes.spray});
+    cluster.evidence = classifier_.evidence(p);
+    if (roadUserEvidence(cluster) < kSurelyThing) return;
+    cluster.points = std::move(described.segment.points);
+    const float isolation = described.descriptor[static_cast<std::size_t>(Feature::kIsolation)];
+    cluster.alone = isolation > 0.5f;
+    judged_.push_back(std::move(cluster));
+  }
+
+  /// Those that are likelier surfaces than phantoms; whether there is one.
+  bool addSurfaces(std::vector<DescribedCluster> surfaces, const CausesHere& causes) {
+    bool any = false;
+    for (DescribedCluster& surface : surfaces) {
+      const Probabilities p = among(surface, causes);
+      if (at(p, ClusterKind::kPhantom) > kSuspicious) continue;
+      add(surface, p, causes);
+      any = true;
+    }
+    return any;
+  }
+
+ private:
+  const ClusterClassifier& classifier_;
+  const PhantomPrior prior_;
+  std::vector<JudgedCluster>& judged_;
+};
+
 }  // namespace
 
 Judgement judgedClusters(const LidarDetections& found, const LidarCloud& cloud,
@@ -214,36 +260,31 @@ Judgement judgedClusters(const LidarDetections& found, const LidarCloud& cloud,
   const ClusterDescriber describer(found, cloud, cells);
   auto clusters = describedClusters(found, describer, judge, reach);
   const std::size_t n = clusters.size();
-  const PhantomPrior prior(classifier.prior());
   std::vector<char> stands = standing(clusters);
   joinPieces(found, describer, judge, clusters, stands);
   Judgement judgement;
   std::vector<JudgedCluster>& judged = judgement.clusters;
+  Handing handing(classifier, judged);
   judgement.phantom.assign(found.obstacles.size(), PlacedReturns::kNoCluster);
   for (std::size_t i = 0; i < n; ++i) {
     if (!stands[i]) continue;
     const bool asks = causes_at && clusters[i].described;
     const CausesHere causes =
         asks ? causes_at(middleOf(found, clusters[i].segment.points)) : CausesHere{};
-    const Probabilities p = prior(clusters[i].probabilities, causes);
+    DescribedCluster& cluster = clusters[i];
+    const Probabilities p = handing.among(cluster, causes);
     const double phantom = at(p, ClusterKind::kPhantom);
-    for (const std::uint32_t point : clusters[i].segment.points)
+    for (const std::uint32_t point : cluster.segment.points)
       judgement.phantom[point] = static_cast<float>(phantom);
     ++judgement.verdicts.clusters;
-    if (phantom > kSurePhantom && roadUser(clusters[i].probabilities) < kHardlyRoadUser) {
-      judgement.verdicts.phantoms.push_back(phantomOf(found, clusters[i].segment.points, phantom));
+    const bool sure = phantom > kSurePhantom && roadUser(cluster.probabilities) < kHardlyRoadUser;
+    if (sure)
+      judgement.verdicts.phantoms.push_back(phantomOf(found, cluster.segment.points, phantom));
+    const bool mixed = causes.weather > kNotClear && phantom > kPerhapsPhantom;
+    if (mixed &&
+        handing.addSurfaces(surfacesIn(cluster.segment.points, found, describer, judge), causes))
       continue;
-    }
-    JudgedCluster cluster;
-    cluster.phantom = phantom;
-    cluster.looks_phantom = classifier.phantomEvidence(clusters[i].probabilities);
-    cluster.cause = std::max({causes.weather, causes.cloud, causes.spray});
-    cluster.evidence = classifier.evidence(p);
-    if (roadUserEvidence(cluster) < kSurelyThing) continue;
-    cluster.points = std::move(clusters[i].segment.points);
-    const float isolation = clusters[i].descriptor[static_cast<std::size_t>(Feature::kIsolation)];
-    cluster.alone = isolation > 0.5f;
-    judged.push_back(std::move(cluster));
+    if (!sure) handing.add(cluster, p, causes);
   }
   dropFragments(found, judged);
   dropLoose(found, cells, judged);

@@ -37,7 +37,6 @@ struct Describing {
 /// Those of a tree of segments that are high enough; `whole` is an index into them.
 std::vector<DescribedCluster> clustersOf(const Describing& by, const SegmentFinder& finder,
                                          std::size_t tree) {
-  constexpr float kLeastTop = 0.5f;  // [m]
   std::vector<DescribedCluster> clusters;
   std::vector<int> number;  // of every segment; -1: too low
   finder.find(tree, [&](const Segment& segment) {
@@ -67,11 +66,10 @@ std::vector<DescribedCluster> describedClusters(const LidarDetections& found,
 std::vector<DescribedCluster> describedClusters(const LidarDetections& found,
                                                 const ClusterDescriber& describer,
                                                 const ClusterVisitor& visit, double reach) {
-  constexpr double kLeastReturns = 8, kLongest = 20;  // [m]
   Vector3 sensor = found.points.sensor;
   sensor.z() -= found.surface.heightAt(sensor.x(), sensor.y());
-  const SegmentFinder finder(found.x, found.y, found.above, kLeastReturns, kLongest, found.trust,
-                             sensor);
+  const SegmentFinder finder(found.x, found.y, found.above, kFewestReturns, kLongestCluster,
+                             found.trust, sensor);
   std::vector<std::vector<DescribedCluster>> of_tree(finder.trees());
   parallelFor(of_tree.size(), [&](std::size_t tree) {
     of_tree[tree] = clustersOf({found, describer, visit, reach}, finder, tree);

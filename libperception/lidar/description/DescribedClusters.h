@@ -9,6 +9,10 @@
 
 namespace perception {
 
+/// Clusters have so many returns and reach so high [m] at least, and are so long [m] at most.
+inline constexpr double kFewestReturns = 8, kLongestCluster = 20;
+inline constexpr float kLeastTop = 0.5f;
+
 struct DescribedCluster {
   Segment segment;  ///< `whole`: index into the same list
   Descriptor descriptor{};
