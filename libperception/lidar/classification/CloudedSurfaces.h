@@ -8,7 +8,7 @@ namespace perception {
 
 /// The surfaces that fog, flakes or drops have joined with themselves and with each other to a
 /// cluster of obstacles, judged: the groups of those of its returns that are hardly doubted. None
-/// where nothing is doubted, or more than half: that is a cloud. Method.md 8.10.
+/// where nothing is doubted, or more than half: that is a cloud. See method.md 8.10.
 std::vector<DescribedCluster> surfacesIn(const std::vector<std::uint32_t>& cluster,
                                          const LidarDetections& found,
                                          const ClusterDescriber& describer,
