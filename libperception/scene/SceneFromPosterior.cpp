@@ -8,6 +8,7 @@
 #include "libperception/core/system/Parallel.h"
 #include "libperception/filter/predict/Prediction.h"
 #include "libperception/filter/state/ClassFilterMotion.h"
+#include "libperception/filter/update/HeadingUpdate.h"
 #include "libperception/filter/update/Smoothing.h"
 
 namespace perception {
@@ -54,18 +55,6 @@ Mixture mixtureOf(const Track& track, const FilterModel& model, const std::vecto
   return out;
 }
 
-/// Whether no sensor but cameras has seen it.
-bool isOfImagesAlone(const Track& track) {
-  bool by_camera = false;
-  const auto& rows = modalities();
-  for (std::size_t i = 0; i < rows.size(); ++i) {
-    if (track.last_hit[i].ns == 0) continue;
-    if (rows[i].letter != Modality::kCamera) return false;
-    by_camera = true;
-  }
-  return by_camera;
-}
-
 double frontProbability(const Track& track, FrontBackAmbiguity bit) {
   if (isOfImagesAlone(track)) bit.traveled *= kWayInImages;
   return bit.frontProbability();
@@ -84,6 +73,10 @@ void SceneParams::visit(ParamVisitor& v) {
          "any");
   v.real("place_sigma", place_sigma, {0, 1000}, "m",
          "largest position deviation of an output object; 0: any");
+  v.expert();
+  v.choiceOf(
+      "traffic", traffic, {"right", "left", "unknown"},
+      "side of the road that traffic keeps to: heading of standing vehicles of unknown front");
 }
 
 std::uint64_t SceneFromPosterior::numberOf(std::uint64_t track_id) {
@@ -214,6 +207,8 @@ Scene SceneFromPosterior::make(const Hypothesis& hypothesis, const EgoState& ego
   }
   std::sort(scene.objects.begin(), scene.objects.end(),
             [](const SceneObject& a, const SceneObject& b) { return a.id < b.id; });
+  if (model_.params.heading == HeadingMode::kSplit)
+    turnUntoldFronts(ego, params_.traffic, model_.classes, scene.objects);
   return scene;
 }
 

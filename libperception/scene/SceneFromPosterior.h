@@ -10,6 +10,7 @@
 #include "libperception/filter/state/FilterModel.h"
 #include "libperception/filter/state/Track.h"
 #include "libperception/scene/Scene.h"
+#include "libperception/scene/UntoldFronts.h"
 
 namespace perception {
 
@@ -29,6 +30,7 @@ struct SceneParams {
   /// [m] Objects are output only if sqrt(sd_x^2 + sd_y^2) is below this (chosen, method.md 5.11):
   /// the deviation of a hidden one grows without bound. 0: all are.
   double place_sigma = 5;
+  TrafficSide traffic = TrafficSide::kRight;
 
   void visit(ParamVisitor& v);
 };

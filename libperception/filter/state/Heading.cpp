@@ -114,16 +114,20 @@ double FrontBackAmbiguity::frontProbability() const {
   const double reversing =
       (1 - kForward) * std::max(kLeastShare, std::exp(-std::abs(traveled) / kReverseFor));
   const double motion = logForward(traveled, kChanceTravel * kChanceTravel, 1 - reversing);
-  return 1 / (1 + std::exp(-(log_odds + shape + motion)));
+  return 1 / (1 + std::exp(-(log_odds + shape + walk + motion)));
 }
 
 double probabilityForward(double v, double v_variance) {
   return 1 / (1 + std::exp(-logForward(v, v_variance)));
 }
 
+void seeWalk(double way, double variance, FrontBackAmbiguity& bit) {
+  bit.walk = logForward(way, variance);
+}
+
 bool asksForReversal(const FrontBackAmbiguity& bit, double v, double v_variance, HeadingMode mode) {
   return mode == HeadingMode::kSplit &&
-         bit.log_odds + bit.shape + logForward(v, v_variance) < kReverseAt;
+         bit.log_odds + bit.shape + bit.walk + logForward(v, v_variance) < kReverseAt;
 }
 
 }  // namespace perception

@@ -23,11 +23,12 @@ struct FrontBackAmbiguity {
   double traveled = 0;  ///< [m] along theta since it is known; negative: against it
   double shape = 0;     ///< mean of PartialBox::front_log_odds along theta over its views
   int views = 0;        ///< that told a front by the shape, up to a limit
+  double walk = 0;      ///< log-odds of who walks: that theta points the way he last surely walked
 
   bool measured() const { return same + opposite > 0; }
   FrontBackAmbiguity reversed() const {
-    return {-log_odds, opposite, same,      -lane,  axis_log_odds,
-            -last,     driven,   -traveled, -shape, views};
+    return {-log_odds, opposite,  same,   -lane, axis_log_odds, -last,
+            driven,    -traveled, -shape, views, -walk};
   }
   /// Probability that theta points to the front, from detections, lanes, the shape and the way that
   /// it has traveled, which vehicles do forward 97 % of the time, and the more
@@ -74,6 +75,9 @@ double nextAxisLogOdds(const FrontBackAmbiguity& bit, const MeasuredHeading& see
 /// Probability that an object without a heading in its state faces the way it moves, with a speed
 /// of v [m/s] and its variance [m^2/s^2].
 double probabilityForward(double v, double v_variance);
+/// Counts that who has walked a way [m] along theta, negative: against it, with its variance [m^2],
+/// faces the way he goes; in place of what his way said before.
+void seeWalk(double way, double variance, FrontBackAmbiguity& bit);
 
 /// Whether (v, theta) -> (-v, theta + pi) agrees better with speed v [m/s], its variance [m^2/s^2]
 /// and the front/back bit.

@@ -112,7 +112,8 @@ struct Track {
   /// [rad] world. Body heading of an object whose class has no heading in its state (people); set
   /// by the first detection with a heading.
   std::optional<ScalarEstimate> body_heading;
-  FrontBackAmbiguity body_heading_bit;            ///< front/back bit of body_heading
+  FrontBackAmbiguity body_heading_bit;  ///< front/back bit of body_heading
+  std::optional<Vector2> walked_from;   ///< [m] world; from here on its way tells body_heading
   std::array<Stamp, kMostModalities> last_hit{};  ///< by modality (modalityIndex); 0 = never
   std::array<int, kMostModalities> hits{};        ///< by modality
   std::vector<RegionSeen> regions;     ///< by sensor, only with [filter] region_memory > 0

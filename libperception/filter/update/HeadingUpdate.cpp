@@ -5,6 +5,7 @@
 
 #include "libperception/core/math/Angle.h"
 #include "libperception/core/math/KalmanUpdate.h"
+#include "libperception/core/math/LogMath.h"
 #include "libperception/filter/state/ClassFilterMotion.h"
 
 namespace perception {
@@ -17,6 +18,9 @@ constexpr double kSureSpeed = 3;
 /// Clusters show the wrong one of their sides more often than image boxes a wrong heading, and do
 /// so again in the next scan (assumed).
 constexpr double kStrayClusterAxes = 0.2, kDenied = -3;
+
+/// [m^2] of a person's place.
+constexpr double kPlaceVariance = 0.5 * 0.5;
 
 bool movesAlongItsAxis(const ClassFilter& f, const FilterParams& p) {
   return std::abs(f.x[2]) > std::max(p.orient_min_speed, kSureSpeed * std::sqrt(f.P(2, 2)));
@@ -36,6 +40,29 @@ bool facesBack(const ClassFilter& f, const FilterParams& p) {
   constexpr double kBack = 0.38;  // log-odds of -0.5, as for detections
   if (std::abs(f.x[2]) > p.orient_min_speed && movesSurely(f)) return f.x[2] < 0;
   return f.heading.views > 0 && f.heading.frontProbability() < kBack;
+}
+
+void reverseBodyIfAsked(HeadingMode mode, Track& track) {
+  if (asksForReversal(track.body_heading_bit, 0, 1, mode)) {
+    track.body_heading->mean += kPi;
+    track.body_heading_bit = track.body_heading_bit.reversed();
+  }
+  track.body_heading->mean = wrapAngle(track.body_heading->mean);
+}
+
+/// The filter of the likeliest class that moves and has no heading in its state; null: none.
+const ClassFilter* walkerOf(const FilterModel& model, const Track& track) {
+  const ClassFilter* walker = nullptr;
+  double best = kMinusInfinity;
+  for (ClassId j = 0; j < model.classes.size(); ++j) {
+    const MotionModel& motion = *model.classes[j].motion;
+    const auto i = static_cast<std::size_t>(j);
+    if (!motion.moves || motion.has_heading || !track.live(j) || track.log_class[i] <= best)
+      continue;
+    best = track.log_class[i];
+    walker = &track.bank[track.filterOf(i)];
+  }
+  return walker;
 }
 
 }  // namespace
@@ -112,13 +139,37 @@ void updateBodyHeading(const MeasuredHeading& seen, const FilterParams& params, 
     scalarUpdate({track.body_heading->mean + r.y, r.variance}, *track.body_heading);
   } else {  // people turn on the spot
     track.body_heading = {seen.yaw, seen.sigma * seen.sigma};
+    track.body_heading_bit.walk = 0;
+    track.walked_from.reset();
   }
   track.body_heading_bit = nextFrontBack(track.body_heading_bit, r.same, seen);
-  if (asksForReversal(track.body_heading_bit, 0, 1, mode)) {
-    track.body_heading->mean += kPi;
-    track.body_heading_bit = track.body_heading_bit.reversed();
+  reverseBodyIfAsked(mode, track);
+}
+
+bool isOfImagesAlone(const Track& track) {
+  bool by_camera = false;
+  const auto& rows = modalities();
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    if (track.last_hit[i].ns == 0) continue;
+    if (rows[i].letter != Modality::kCamera) return false;
+    by_camera = true;
   }
-  track.body_heading->mean = wrapAngle(track.body_heading->mean);
+  return by_camera;
+}
+
+void faceTheWay(const FilterModel& model, Track& track) {
+  constexpr double kWalk = 1.5, kFacing = 0.7;  // [m] more than its place errs; cosine (assumed)
+  const ClassFilter* walker = track.body_heading ? walkerOf(model, track) : nullptr;
+  if (walker == nullptr || isOfImagesAlone(track)) return;
+  const Vector2 place = walker->x.head<2>();
+  const Vector2 way = place - track.walked_from.value_or(place);
+  if (track.walked_from && way.norm() < kWalk) return;
+  track.walked_from = place;
+  const double yaw = track.body_heading->mean;
+  const double along = way.dot(Vector2(std::cos(yaw), std::sin(yaw)));
+  if (std::abs(along) <= kFacing * way.norm()) return;
+  seeWalk(along, kPlaceVariance, track.body_heading_bit);
+  reverseBodyIfAsked(model.params.heading, track);
 }
 
 }  // namespace perception

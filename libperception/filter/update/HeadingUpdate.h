@@ -29,5 +29,11 @@ bool boxDeniesAxis(const Measurement& m, const std::optional<BirthState>& birth,
 
 /// The same as useHeading() for the body heading of an object whose state has no heading.
 void updateBodyHeading(const MeasuredHeading& seen, const FilterParams& params, Track& track);
+/// Whether no sensor but cameras has seen it. Ranges from images err alike from image to image, so
+/// that its way is not certain.
+bool isOfImagesAlone(const Track& track);
+/// Front and back of the body heading by the way that its object has walked, unless seen in images
+/// alone. Call once a measurement.
+void faceTheWay(const FilterModel& model, Track& track);
 
 }  // namespace perception

@@ -226,6 +226,7 @@ Track hitTrack(Track predicted, const TrackLikelihoods& row, const PairLikelihoo
     track.log_class[i] +=
         pair.log_class_evidence[i] + model.params.kinematic_exponent * logSpeed(c, f, model);
   }
+  faceTheWay(model, track);
   if (m.base_z) scalarUpdate(*m.base_z, track.base_z);
   const double shape = look ? rememberEvidence(*look, scan, track) : 0;
   updateSizes(m, axisOf(model, track), model, track);
@@ -248,12 +249,10 @@ Track missTrack(Track predicted, const TrackLikelihoods& row, const MeasurementS
     for (std::size_t j = 0; j < track.log_class.size(); ++j)
       track.log_class[j] += evidence.added(j);
     rememberEvidence(*look, scan, track);
-  } else {
-    for (std::size_t j = 0; j < track.log_class.size(); ++j) {
-      // Missed detections of one object are correlated, as its labels are.
-      track.log_class[j] +=
-          scan.model->detectionExponent() * std::log1p(-row.detection_by_class[j]);
-    }
+  } else {  // missed detections of one object are correlated, as its labels are
+    const double exponent = scan.model->detectionExponent();
+    for (std::size_t j = 0; j < track.log_class.size(); ++j)
+      track.log_class[j] += exponent * std::log1p(-row.detection_by_class[j]);
   }
   clampClasses(model.params.class_epsilon, track.log_class);
   decideClass(model, false, track);

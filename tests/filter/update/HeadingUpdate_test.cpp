@@ -132,6 +132,31 @@ TEST(HeadingUpdate, StrayAxesOfADetectorAreLeftOut) {
   EXPECT_LT(std::sqrt(square / kBoxes), 0.5 * std::sqrt(own / kBoxes));
 }
 
+/// The facing of a pedestrian with headings seen to the north who goes `way` [m] north.
+double facingAfterWalk(int headings, double way, Modality seen_by = Modality::kLidar) {
+  FilterModel model;
+  model.classes.classes.resize(1);
+  model.classes.classes[0].motion = findMotionModel("constant-velocity");
+  Track track;
+  track.log_class = {0};
+  track.bank.resize(1);
+  track.last_hit[modalityIndex(seen_by)] = Stamp{1};
+  for (int i = 0; i < headings; ++i) updateBodyHeading({kPi / 2, kSigma, 0.2}, model.params, track);
+  for (int i = 0; i <= 20; ++i) {
+    track.bank[0].x << 5, 5 + 0.05 * i * way, 0, 0;
+    faceTheWay(model, track);
+  }
+  return track.body_heading->mean;
+}
+
+TEST(HeadingUpdate, PeopleFaceTheWayTheyWalk) {
+  EXPECT_NEAR(facingAfterWalk(1, 4), kPi / 2, 1e-9);
+  EXPECT_NEAR(facingAfterWalk(1, -4), -kPi / 2, 1e-9) << "one reversed heading";
+  EXPECT_NEAR(facingAfterWalk(1, -1), kPi / 2, 1e-9) << "no walk";
+  EXPECT_NEAR(facingAfterWalk(1, -4, Modality::kCamera), kPi / 2, 1e-9) << "images alone drift";
+  EXPECT_NEAR(facingAfterWalk(20, -4), kPi / 2, 1e-9) << "a detector that insists is believed";
+}
+
 TEST(HeadingUpdate, ReorientingKeepsTheVelocityAlong) {
   ClassFilter f = car(0, 4);
   reorient(kPi / 3, 0.02, f);
