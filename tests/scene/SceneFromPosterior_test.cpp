@@ -89,6 +89,26 @@ TEST(Scene, AShortWayInImagesAloneDoesNotTellTheFront) {
   EXPECT_GT(frontAfter(20, {Modality::kCamera}), 0.95);
 }
 
+TEST(Scene, AStandingCarOfUnknownFrontIsShownAsItsSideOfTheRoadFaces) {
+  FilterModel model;
+  model.classes = test::pedestrianAndCar();
+  for (ObjectClass& c : model.classes.classes) c.motion = findMotionModel("wheeled");
+  Track track = *oneCar(0.1).tracks[0];
+  for (ClassFilter& f : track.bank) f.oriented = true;
+  const Hypothesis one(TrackTable{std::make_shared<const Track>(track)});
+  EgoState ego;  // the car stands at (10, 3) with a yaw of 0
+  ego.stamp = test::kFirstStamp;
+  const auto yaw = [&](const SceneParams& params) {
+    return std::abs(SceneFromPosterior(model, params).make(one, ego, 0).objects.at(0).yaw);
+  };
+  SceneParams left;
+  left.traffic = TrafficSide::kLeft;
+  EXPECT_NEAR(yaw({}), kPi, 1e-9) << "traffic keeps to the right";
+  EXPECT_NEAR(yaw(left), 0, 1e-9);
+  model.params.heading = HeadingMode::kWide;
+  EXPECT_NEAR(yaw({}), 0, 1e-9);
+}
+
 TEST(Scene, AForgottenIdIsNotGivenAgain) {
   FilterModel model;
   model.classes = test::pedestrianAndCar();
