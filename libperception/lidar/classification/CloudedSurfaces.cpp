@@ -51,4 +51,11 @@ std::vector<DescribedCluster> surfacesIn(const std::vector<std::uint32_t>& clust
   return surfaces;
 }
 
+double meanTrust(const std::vector<std::uint32_t>& cluster, const LidarDetections& found) {
+  if (found.trust.empty()) return 1;
+  double sum = 0;
+  for (const std::uint32_t i : cluster) sum += static_cast<double>(found.trust[i]);
+  return sum / static_cast<double>(cluster.size());
+}
+
 }  // namespace perception

@@ -14,4 +14,7 @@ std::vector<DescribedCluster> surfacesIn(const std::vector<std::uint32_t>& clust
                                          const ClusterDescriber& describer,
                                          const ClusterVisitor& judge);
 
+/// Mean trust in the returns of a cluster of obstacles.
+double meanTrust(const std::vector<std::uint32_t>& cluster, const LidarDetections& found);
+
 }  // namespace perception

@@ -202,8 +202,9 @@ std::vector<char> standing(const std::vector<DescribedCluster>& clusters) {
 /// The clusters of a scan that may be road users, as they are found.
 class Handing {
  public:
-  Handing(const ClusterClassifier& classifier, std::vector<JudgedCluster>& judged)
-      : classifier_(classifier), prior_(classifier.prior()), judged_(judged) {}
+  Handing(const LidarDetections& found, const ClusterClassifier& classifier,
+          std::vector<JudgedCluster>& judged)
+      : found_(found), classifier_(classifier), prior_(classifier.prior()), judged_(judged) {}
 
   /// A classifier's probabilities where something may make phantoms.
   Probabilities among(const DescribedCluster& c, const CausesHere& causes) const {
@@ -212,7 +213,8 @@ class Handing {
 
   void add(DescribedCluster& described, const Probabilities& p, const CausesHere& causes) {
     JudgedCluster cluster;
-    cluster.phantom = at(p, ClusterKind::kPhantom);
+    cluster.phantom =
+        1 - meanTrust(described.segment.points, found_) * (1 - at(p, ClusterKind::kPhantom));
     cluster.looks_phantom = classifier_.phantomEvidence(described.probabilities);
     cluster.cause = std::max({causes.weather, causes.cloud, causes.spray});
     cluster.evidence = classifier_.evidence(p);
@@ -236,6 +238,7 @@ class Handing {
   }
 
  private:
+  const LidarDetections& found_;
   const ClusterClassifier& classifier_;
   const PhantomPrior prior_;
   std::vector<JudgedCluster>& judged_;
@@ -264,7 +267,7 @@ Judgement judgedClusters(const LidarDetections& found, const LidarCloud& cloud,
   joinPieces(found, describer, judge, clusters, stands);
   Judgement judgement;
   std::vector<JudgedCluster>& judged = judgement.clusters;
-  Handing handing(classifier, judged);
+  Handing handing(found, classifier, judged);
   judgement.phantom.assign(found.obstacles.size(), PlacedReturns::kNoCluster);
   for (std::size_t i = 0; i < n; ++i) {
     if (!stands[i]) continue;

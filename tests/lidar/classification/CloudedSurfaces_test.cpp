@@ -33,7 +33,7 @@ ClusterClassifier personsOrPhantoms() {
 /// A person 8 m ahead, a wall behind, and fog: one beam in ten about the person returns from
 /// 0.1 to 0.9 m before 8 m, and is doubted.
 SensorFrame personInFog(bool with_person = true) {
-  SolidScene scene;
+  test::SolidScene scene;
   scene.boxes = {{{14, 0}, kPi / 2, 12, 0.3, 0, 4}};
   if (with_person) scene.cylinders = {{{8, 0}, 0.25, 0, 1.75}};
   SensorFrame frame = test::castScan(scene, test::narrowLidar());
@@ -97,6 +97,24 @@ TEST(CloudedSurfaces, APersonInWhatIsLikelyFogIsMeasured) {
   };
   EXPECT_EQ(personsIn({0}), 0) << "in clear air the cluster is what it looks like";
   EXPECT_EQ(personsIn({1}), 1);
+}
+
+TEST(CloudedSurfaces, AClusterOfDoubtedReturnsIsLikelierAPhantom) {
+  test::SolidScene scene;
+  scene.cylinders = {{{8, 0}, 0.25, 0, 1.75}};
+  const SensorFrame frame = test::castScan(scene, test::narrowLidar());
+  LidarDetections found = test::plainFrontEnd().detect(frame);
+  const auto phantom = [&](float trust) {
+    found.trust.assign(found.obstacles.size(), trust);
+    const Judgement judgement = judgedClusters(found, std::get<LidarCloud>(frame.data),
+                                               DirectionCells(found.points), personsOrPhantoms());
+    EXPECT_EQ(judgement.clusters.size(), 1u);
+    EXPECT_LT(*std::max_element(judgement.phantom.begin(), judgement.phantom.end()), 0.1f)
+        << "the grid has the trust of each return";
+    return judgement.clusters.at(0).phantom;
+  };
+  EXPECT_LT(phantom(1), 0.1);
+  EXPECT_NEAR(1 - phantom(0.6f), 0.6 * (1 - phantom(1)), 1e-6);
 }
 
 }  // namespace
