@@ -1,26 +1,21 @@
 #include "libperception/measurement/models/FootprintModel.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "libperception/core/math/LogMath.h"
 #include "libperception/measurement/models/FootprintInView.h"
 #include "libperception/measurement/objects/ExtentUpdate.h"
+#include "libperception/measurement/objects/NewbornWidth.h"
 
 namespace perception {
 namespace {
 
-constexpr double kWidestClutter = 10;  // [m] clutter is uniform in width up to this (method.md 4.1)
-constexpr double kWidestAngle = 0.5;   // [rad] the same where the range is not seen
+constexpr double kWidestAngle = 0.5;  // [rad] the same where the range is not seen
 constexpr double kSideSigma =
     0.5;  // [m] a complete side as a measurement of the extent (method.md 5.13)
-constexpr double kBoxSigma = 0.2;   // [m] of a seen box's faces
-constexpr double kSureYaw = 0.35;   // [rad] boxes of less certain direction give no heading
-constexpr std::size_t kAngles = 8;  // of the average over unknown headings
-/// Shares of objects of any width, so that no class is excluded by size alone: as range times
-/// angle, and across the line of sight, where two objects may be one cluster (method.md 5.14).
-constexpr double kAnyWidth = 0.001, kAnyBoxWidth = 0.05;
+constexpr double kBoxSigma = 0.2;  // [m] of a seen box's faces
+constexpr double kSureYaw = 0.35;  // [rad] boxes of less certain direction give no heading
 
 bool seen(const Measurement& m, FootprintModel::Axis axis) { return m.seen >> axis & 1; }
 
@@ -32,64 +27,11 @@ double rangeOf(const Measurement& m, const SensorState& s) {
              : std::max((m.position - sensorPosition(s)).norm(), kClearance);
 }
 
-double normalDensity(double x, double variance) {
-  return std::exp(-0.5 * x * x / variance) / std::sqrt(kTwoPi * variance);
-}
-
-/// Sines and cosines of evenly spaced headings from 0 to 90 degrees.
-struct Headings {
-  std::array<double, kAngles> sine, cosine;
-  Headings() {
-    for (std::size_t i = 0; i < kAngles; ++i) {
-      const double angle = (static_cast<double>(i) + 0.5) * (kPi / 2) / kAngles;
-      sine[i] = std::sin(angle), cosine[i] = std::cos(angle);
-    }
-  }
-};
-
-/// Density [1/m] of the visible width of the objects of a class, headings uniform, measured with
-/// variance `noise` [m^2] (method.md 4.1).
-double widthDensity(const ObjectClass& c, double width, double noise) {
-  static const Headings headings;
-  const double l2 = c.length_sigma * c.length_sigma, w2 = c.width_sigma * c.width_sigma;
-  if (!c.motion->has_heading)
-    return normalDensity(width - 0.5 * (c.length + c.width), 0.25 * (l2 + w2) + noise);
-  double sum = 0;
-  for (std::size_t i = 0; i < kAngles; ++i) {
-    const double s = headings.sine[i], k = headings.cosine[i];
-    sum += normalDensity(width - (c.length * s + c.width * k), l2 * s * s + w2 * k * k + noise);
-  }
-  return sum / kAngles;
-}
-
-/// The same with a share of any width.
-double widthDensity(const ObjectClass& c, double width, double noise, double share_of_any) {
-  return (1 - share_of_any) * widthDensity(c, width, noise) + share_of_any / kWidestClutter;
-}
-
 /// [m] of the box of a measurement that has both edges, across the line of sight.
 double boxAcross(const Measurement& m, const SensorState& s) {
   const double left = m.z[FootprintModel::kLeft], right = m.z[FootprintModel::kRight];
   const double angle = yawOf(s.T_world_sensor) + middleBearing(left, right) - m.sides->yaw;
   return m.sides->length * std::abs(std::sin(angle)) + m.sides->width * std::abs(std::cos(angle));
-}
-
-/// Factor of a class in the classes of its shape, whose density together stays that of `width`, by
-/// the width `across` of the box. Range times angle is too little for what goes on away from the
-/// sensor: a truck beside it is 3 m wide.
-double gainInShape(const ClassTable& classes, ClassId c, double width, double across,
-                   double noise) {
-  const ObjectClass& own = classes[c];
-  double by_width = 0, by_box = 0, priors = 0;
-  for (const ObjectClass& other : classes.classes) {
-    if (other.shape != own.shape) continue;
-    priors += other.prior;
-    by_width += other.prior * widthDensity(other, width, noise, kAnyWidth);
-    by_box += other.prior * widthDensity(other, across, noise, kAnyBoxWidth);
-  }
-  if (priors <= own.prior) return 1;
-  return widthDensity(own, across, noise, kAnyBoxWidth) / by_box * by_width /
-         widthDensity(own, width, noise, kAnyWidth);
 }
 
 /// Log density per unit of the axes seen of a position that is uniform over the field of view,
@@ -227,8 +169,10 @@ double FootprintModel::logBirthDensity(const Measurement& m, ClassId c,
     const double range = rangeOf(m, sensor);
     const double width = range * wrapAngle(m.z[kLeft] - m.z[kRight]);
     const double noise = range * range * (m.R(kLeft, kLeft) + m.R(kRight, kRight));
-    per_meter = widthDensity(classes_[c], width, noise, kAnyWidth);
-    if (m.sides) per_meter *= gainInShape(classes_, c, width, boxAcross(m, sensor), noise);
+    const NewbornWidth newborn(classes_, width, noise);
+    per_meter = newborn.density(c);
+    if (m.sides) per_meter *= newborn.gainInShape(c, boxAcross(m, sensor));
+    if (m.view) per_meter *= newborn.gainOfShape(c, m.log_class);
   }
   return std::log(detection_model_.params().births_per_scan) +
          logUniform(m, detection_model_, sensor, per_meter);

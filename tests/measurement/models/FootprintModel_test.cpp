@@ -233,6 +233,29 @@ TEST(FootprintModel, TheBoxOfATruckBesideTheSensorTellsItFromACar) {
   EXPECT_NEAR(vehicles(), all, 1e-9 * all) << "shapes are told apart as before";
 }
 
+TEST(FootprintModel, TheWidthThatAShapeHasToldCountsLessBetweenShapesAndAsMuchTogether) {
+  ClassTable classes = footprintClasses();
+  classes.classes[0].shape = ObjectShape::kVehicle;
+  classes.classes[1].shape = ObjectShape::kPedestrian;
+  const FootprintModel f(classes, DetectionModel({}, {{}, {}}, {"car_sized", "person_sized"}));
+  const SensorState s = sensorAt(0, 0, 0);
+  auto m = measurementOf(0.1, -0.1, 20, 7);  // 4 m wide
+  m.log_class = {1, 0};
+  const auto log_odds = [&] { return f.logBirthDensity(m, 0, s) - f.logBirthDensity(m, 1, s); };
+  const auto together = [&] {
+    double sum = 0;
+    for (const ClassId c : {0, 1})
+      sum += classes[c].prior *
+             std::exp(m.log_class[static_cast<std::size_t>(c)] + f.logBirthDensity(m, c, s));
+    return sum;
+  };
+  const double by_width = log_odds(), all = together();
+  m.view.emplace();
+  EXPECT_NEAR(log_odds(), 0.4 * by_width, 1e-9);
+  EXPECT_GT(by_width, 2);
+  EXPECT_NEAR(together(), all, 1e-9 * all) << "how likely a newborn is does not change";
+}
+
 TEST(FootprintModel, ARearViewStandsAcrossAndTheCarLiesBehindIt) {
   const FootprintModel f = model();
   Measurement m = measurementOf(0.045, -0.045, 20, 7);
