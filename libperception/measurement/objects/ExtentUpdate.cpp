@@ -9,8 +9,9 @@ namespace {
 
 constexpr double kFloor = 0.1 * 0.1;    // [m^2]
 constexpr double kFloorShare = 1. / 9;  // as for nine independent errors
-constexpr double kMostSigmas = 3;       // by which one is wider than the mean of its class; assumed
-constexpr double kLeastSigmas = 4;      // by which a vehicle is shorter; assumed
+/// By which one is wider than the mean of its class, and a cyclist longer; assumed.
+constexpr double kMostSigmas = 3;
+constexpr double kLeastSigmas = 4;  // by which a vehicle is shorter; assumed
 
 void updateSide(double seen, bool complete, double own_sigma, double sigma, double& mean,
                 double& var) {
@@ -43,6 +44,8 @@ Extent updateExtent(const Extent& extent, const PartialBox& sides, double yaw, d
 
 Extent boundedExtent(Extent extent, const ObjectClass& c, bool told_by_shape) {
   extent.width = std::min(extent.width, c.width + kMostSigmas * c.width_sigma);
+  if (told_by_shape && c.shape == ObjectShape::kCyclist)
+    extent.length = std::min(extent.length, c.length + kMostSigmas * c.length_sigma);
   if (told_by_shape && c.shape == ObjectShape::kVehicle)
     extent.length = std::max(extent.length, c.length - kLeastSigmas * c.length_sigma);
   return extent;

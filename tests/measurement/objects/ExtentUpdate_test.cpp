@@ -30,6 +30,16 @@ TEST(BoundedExtent, ACarIsAtMostFourDeviationsShorterThanTheMean) {
   EXPECT_DOUBLE_EQ(boundedExtent(extent, car(), false).length, 1) << "a detector's box";
 }
 
+TEST(BoundedExtent, ACyclistIsAtMostThreeDeviationsLongerThanTheMean) {
+  ObjectClass cyclist = car();
+  cyclist.shape = ObjectShape::kCyclist;
+  cyclist.length = 1.8, cyclist.length_sigma = 0.2;
+  Extent extent;
+  extent.length = 5.3, extent.width = 0.6;
+  EXPECT_DOUBLE_EQ(boundedExtent(extent, cyclist, true).length, 2.4) << "what is longer is none";
+  EXPECT_DOUBLE_EQ(boundedExtent(extent, cyclist, false).length, 5.3) << "a detector's box";
+}
+
 TEST(BoundedExtent, APossibleSizeIsKept) {
   Extent extent;
   extent.length = 5.6, extent.width = 0.4;
