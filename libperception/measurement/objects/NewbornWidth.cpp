@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 
 #include "libperception/core/math/Angle.h"
 
@@ -47,6 +48,12 @@ double widthDensity(const ObjectClass& c, double width, double noise) {
   return sum / kAngles;
 }
 
+/// [m] Mean visible width of the objects of a class.
+double meanWidth(const ObjectClass& c) {
+  const double share = c.motion->has_heading ? 2 / kPi : 0.5;  // of length and width
+  return share * (c.length + c.width);
+}
+
 /// The same with a share of any width [m].
 double widthDensity(const ObjectClass& c, double width, double noise, double share_of_any) {
   return (1 - share_of_any) * widthDensity(c, width, noise) + share_of_any / kWidestClutter;
@@ -86,14 +93,26 @@ NewbornWidth::ByShape NewbornWidth::densities(ByShape& priors) const {
   return sums;
 }
 
+/// [m] Mean visible width of the class that moves and is likeliest by its shape.
+double NewbornWidth::widthOfLikeliest(const std::vector<double>& log_class) const {
+  double most = -std::numeric_limits<double>::infinity(), width = 0;
+  for (ClassId c = 0; c < classes_.size(); ++c) {
+    const double said = std::log(classes_[c].prior) + log_class[static_cast<std::size_t>(c)];
+    if (!classes_[c].motion->moves || said <= most) continue;
+    most = said, width = meanWidth(classes_[c]);
+  }
+  return width;
+}
+
 double NewbornWidth::gainOfShape(ClassId c, const std::vector<double>& log_class) const {
   if (log_class.size() != classes_.classes.size()) return 1;
   ByShape priors{};
   const ByShape of_shape = densities(priors);
+  const double best = *std::max_element(log_class.begin(), log_class.end());
+  if (width_ > widthOfLikeliest(log_class)) return 1;
   const auto gain = [&](ObjectShape shape) {
     return std::pow(of_shape[static_cast<std::size_t>(shape)], kRepeated - 1);
   };
-  const double best = *std::max_element(log_class.begin(), log_class.end());
   double before = 0, after = 0;
   for (ClassId j = 0; j < classes_.size(); ++j) {
     const ObjectShape shape = classes_[j].shape;

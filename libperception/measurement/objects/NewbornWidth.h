@@ -26,6 +26,7 @@ class NewbornWidth {
   double gainOfShape(ClassId c, const std::vector<double>& log_class) const;
 
  private:
+  double widthOfLikeliest(const std::vector<double>& log_class) const;
   using ByShape = std::array<double, kObjectShapes>;
   ByShape densities(ByShape& priors) const;
 
