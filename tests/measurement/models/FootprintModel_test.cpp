@@ -256,19 +256,6 @@ TEST(FootprintModel, TheWidthThatAShapeHasToldCountsLessBetweenShapesAndAsMuchTo
   EXPECT_NEAR(together(), all, 1e-9 * all) << "how likely a newborn is does not change";
 }
 
-TEST(FootprintModel, AWidthBeyondTheMeanOfTheLikeliestClassCountsInFull) {
-  ClassTable classes = footprintClasses();
-  classes.classes[0].shape = ObjectShape::kVehicle;
-  classes.classes[1].shape = ObjectShape::kPedestrian;
-  const FootprintModel f(classes, DetectionModel({}, {{}, {}}, {"car_sized", "person_sized"}));
-  const SensorState s = sensorAt(0, 0, 0);
-  auto m = measurementOf(0.15, -0.15, 20, 7);  // 6 m wide
-  m.log_class = {1, 0};
-  const double before = f.logBirthDensity(m, 0, s);
-  m.view.emplace();
-  EXPECT_EQ(f.logBirthDensity(m, 0, s), before) << "no part of a car";
-}
-
 TEST(FootprintModel, ARearViewStandsAcrossAndTheCarLiesBehindIt) {
   const FootprintModel f = model();
   Measurement m = measurementOf(0.045, -0.045, 20, 7);

@@ -1,0 +1,33 @@
+#include "libperception/measurement/objects/NewbornWidth.h"
+
+#include <gtest/gtest.h>
+
+#include "libperception/core/math/Angle.h"
+
+namespace perception {
+namespace {
+
+ClassTable vehiclesAndWalkers() {
+  ClassTable classes;
+  classes.classes.resize(2);
+  ObjectClass &vehicle = classes.classes[0], &walker = classes.classes[1];
+  vehicle.shape = ObjectShape::kVehicle, vehicle.motion = findMotionModel("wheeled");
+  vehicle.length = 4.5, vehicle.length_sigma = 0.6, vehicle.width = 1.8, vehicle.width_sigma = 0.2;
+  walker.shape = ObjectShape::kPedestrian, walker.motion = findMotionModel("constant-velocity");
+  walker.length = walker.width = 0.5, walker.length_sigma = walker.width_sigma = 0.1;
+  return classes;
+}
+
+TEST(NewbornWidth, WhatIsWiderThanTheLikeliestClassIsOnAverageCountsInFull) {
+  const ClassTable classes = vehiclesAndWalkers();
+  const ObjectClass& car = classes[0];
+  const double mean = 2 / kPi * (car.length + car.width);
+  const std::vector<double> a_car = {3, 0}, a_person = {-3, 0};
+  EXPECT_EQ(NewbornWidth(classes, mean + 0.1, 0.01).gainOfShape(0, a_car), 1);
+  EXPECT_LT(NewbornWidth(classes, mean - 0.1, 0.01).gainOfShape(0, a_car), 1);
+  EXPECT_EQ(NewbornWidth(classes, mean - 0.1, 0.01).gainOfShape(0, a_person), 1)
+      << "no person is that wide";
+}
+
+}  // namespace
+}  // namespace perception
