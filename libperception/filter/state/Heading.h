@@ -23,7 +23,7 @@ struct FrontBackAmbiguity {
   double traveled = 0;  ///< [m] along theta since it is known; negative: against it
   double shape = 0;     ///< mean of PartialBox::front_log_odds along theta over its views
   int views = 0;        ///< that told a front by the shape, up to a limit
-  double walk = 0;      ///< log-odds of who walks: that theta points the way he last surely walked
+  double walk = 0;  ///< log-odds that theta points the way in which the person last surely walked
 
   bool measured() const { return same + opposite > 0; }
   FrontBackAmbiguity reversed() const {
@@ -75,8 +75,8 @@ double nextAxisLogOdds(const FrontBackAmbiguity& bit, const MeasuredHeading& see
 /// Probability that an object without a heading in its state faces the way it moves, with a speed
 /// of v [m/s] and its variance [m^2/s^2].
 double probabilityForward(double v, double v_variance);
-/// Counts that who has walked a way [m] along theta, negative: against it, with its variance [m^2],
-/// faces the way he goes; in place of what his way said before.
+/// Sets the log-odds of a person's front by the way [m] that the person has walked along theta
+/// (negative: against it), with its variance [m^2]: people face the way they walk.
 void seeWalk(double way, double variance, FrontBackAmbiguity& bit);
 
 /// Whether (v, theta) -> (-v, theta + pi) agrees better with speed v [m/s], its variance [m^2/s^2]

@@ -19,7 +19,7 @@ constexpr double kSureSpeed = 3;
 /// so again in the next scan (assumed).
 constexpr double kStrayClusterAxes = 0.2, kDenied = -3;
 
-/// [m^2] of a person's place.
+/// [m^2] Variance of the place of a person (assumed).
 constexpr double kPlaceVariance = 0.5 * 0.5;
 
 bool movesAlongItsAxis(const ClassFilter& f, const FilterParams& p) {

@@ -199,11 +199,11 @@ std::vector<char> standing(const std::vector<DescribedCluster>& clusters) {
   return stands;
 }
 
-/// The clusters of a scan that may be road users, as they are found.
-class Handing {
+/// Collects the clusters of a scan that may be road users.
+class RoadUserCollector {
  public:
-  Handing(const LidarDetections& found, const ClusterClassifier& classifier,
-          std::vector<JudgedCluster>& judged)
+  RoadUserCollector(const LidarDetections& found, const ClusterClassifier& classifier,
+                    std::vector<JudgedCluster>& judged)
       : found_(found), classifier_(classifier), prior_(classifier.prior()), judged_(judged) {}
 
   /// A classifier's probabilities where something may make phantoms.
@@ -267,7 +267,7 @@ Judgement judgedClusters(const LidarDetections& found, const LidarCloud& cloud,
   joinPieces(found, describer, judge, clusters, stands);
   Judgement judgement;
   std::vector<JudgedCluster>& judged = judgement.clusters;
-  Handing handing(found, classifier, judged);
+  RoadUserCollector collector(found, classifier, judged);
   judgement.phantom.assign(found.obstacles.size(), PlacedReturns::kNoCluster);
   for (std::size_t i = 0; i < n; ++i) {
     if (!stands[i]) continue;
@@ -275,7 +275,7 @@ Judgement judgedClusters(const LidarDetections& found, const LidarCloud& cloud,
     const CausesHere causes =
         asks ? causes_at(middleOf(found, clusters[i].segment.points)) : CausesHere{};
     DescribedCluster& cluster = clusters[i];
-    const Probabilities p = handing.among(cluster, causes);
+    const Probabilities p = collector.among(cluster, causes);
     const double phantom = at(p, ClusterKind::kPhantom);
     for (const std::uint32_t point : cluster.segment.points)
       judgement.phantom[point] = static_cast<float>(phantom);
@@ -285,9 +285,9 @@ Judgement judgedClusters(const LidarDetections& found, const LidarCloud& cloud,
       judgement.verdicts.phantoms.push_back(phantomOf(found, cluster.segment.points, phantom));
     const bool mixed = causes.weather > kNotClear && phantom > kPerhapsPhantom;
     if (mixed &&
-        handing.addSurfaces(surfacesIn(cluster.segment.points, found, describer, judge), causes))
+        collector.addSurfaces(surfacesIn(cluster.segment.points, found, describer, judge), causes))
       continue;
-    if (!sure) handing.add(cluster, p, causes);
+    if (!sure) collector.add(cluster, p, causes);
   }
   dropFragments(found, judged);
   dropLoose(found, cells, judged);

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <limits>
 
 #include "libperception/core/math/Angle.h"
+#include "libperception/core/math/LogMath.h"
 
 namespace perception {
 namespace {
@@ -14,8 +14,8 @@ constexpr std::size_t kAngles = 8;  // of the average over unknown headings
 /// Shares of objects of any width, so that no class is excluded by size alone: as range times
 /// angle, and across the line of sight, where two objects may be one cluster (method.md 5.14).
 constexpr double kAnyWidth = 0.001, kAnyBoxWidth = 0.05;
-/// Exponent of the width between shapes that are told by what returns look like (judged on
-/// recordings, docs/decisions/filter.md).
+/// Exponent of a width that the shape has told already (judged on recordings,
+/// docs/decisions/filter.md).
 constexpr double kRepeated = 0.4;
 
 double normalDensity(double x, double variance) {
@@ -95,7 +95,7 @@ NewbornWidth::ByShape NewbornWidth::densities(ByShape& priors) const {
 
 /// [m] Mean visible width of the class that moves and is likeliest by its shape.
 double NewbornWidth::widthOfLikeliest(const std::vector<double>& log_class) const {
-  double most = -std::numeric_limits<double>::infinity(), width = 0;
+  double most = kMinusInfinity, width = 0;
   for (ClassId c = 0; c < classes_.size(); ++c) {
     const double said = std::log(classes_[c].prior) + log_class[static_cast<std::size_t>(c)];
     if (!classes_[c].motion->moves || said <= most) continue;

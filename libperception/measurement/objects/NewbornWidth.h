@@ -23,6 +23,7 @@ class NewbornWidth {
   double gainInShape(ClassId c, double across) const;
   /// Factor of the shape of a class where `log_class`, the evidence by class, comes from what the
   /// returns look like: their width has spoken there already. What all classes give together stays.
+  /// 1 where the width is above the average of the likeliest class that moves: that is no part.
   double gainOfShape(ClassId c, const std::vector<double>& log_class) const;
 
  private:
