@@ -14,8 +14,7 @@ constexpr std::size_t kAngles = 8;  // of the average over unknown headings
 /// Shares of objects of any width, so that no class is excluded by size alone: as range times
 /// angle, and across the line of sight, where two objects may be one cluster (method.md 5.14).
 constexpr double kAnyWidth = 0.001, kAnyBoxWidth = 0.05;
-/// Exponent of a width that the shape has told already (judged on recordings,
-/// docs/decisions/filter.md).
+/// Exponent of a width that the shape has told already (judged on recordings, decisions/filter.md).
 constexpr double kRepeated = 0.4;
 
 double normalDensity(double x, double variance) {
