@@ -123,34 +123,71 @@ void PairTerms::add(std::size_t j, const Density& density, double log_detection)
   mixture_[j] = track_.log_class[j] + pair_.log_by_class[j];
 }
 
-void PairTerms::weighStanding() {
-  pair_.stands = track_.stands;
+namespace {
+
+/// One of two motions of an object, in the class update alone: p of each is known.
+struct TwoMotions {
+  double first;  ///< probability of the first one before the measurement
+
+  /// `was` [0, 1], drawn to 1/2 over `dt` [s].
+  TwoMotions(double was, double dt) {
+    constexpr double kLeast = 1e-6;
+    const double same = std::exp(-2 * kStartsAndStops * dt);
+    first = std::clamp(0.5 + (was - 0.5) * same, kLeast, 1 - kLeast);
+  }
+  /// Of the mixture's log density over that of the second motion, without overflow; `d`: log
+  /// density of the first over it.
+  double gain(double d) const {
+    return d > 0 ? d + std::log(first + (1 - first) * std::exp(-d))
+                 : std::log(first * std::exp(d) + (1 - first));
+  }
+  double posterior(double d) const { return 1 / (1 + (1 - first) / first * std::exp(-d)); }
+};
+
+}  // namespace
+
+/// Log likelihood ratio of the object's velocity by its filter and that of the sensor's vehicle
+/// there, beside the density of the measurement.
+double PairTerms::logGoesAlong(std::size_t j) const {
+  constexpr double kSlack = 0.3;  // [m/s]
+  const auto filter = track_.filterOf(j);
+  const ClassFilter& f = track_.bank[filter];
+  const Kinematics k = kinematicsOf(terms_.model.classes[static_cast<ClassId>(filter)], f);
+  const EgoState& ego = terms_.scan.state.ego;
+  const Vector2 arm = k.q.head<2>() - ego.T_world_ego.translation().head<2>();
+  const Vector2 along = ego.velocity + ego.yaw_rate * Vector2(-arm.y(), arm.x());
+  const double variance = f.oriented ? f.P(2, 2) : 0.5 * (f.P(2, 2) + f.P(3, 3));
+  return -0.5 * (k.q.segment<2>(2) - along).squaredNorm() / (variance + kSlack * kSlack);
+}
+
+void PairTerms::weighMotions() {
+  pair_.stands = track_.stands, pair_.goes_along = track_.goes_along;
   if (terms_.still() < 0 || !m_.view) return;
-  const double still = log_density_[static_cast<std::size_t>(terms_.still())];
+  const auto thing = static_cast<std::size_t>(terms_.still());
+  const double still = log_density_[thing];
   if (still == kMinusInfinity) return;
   const Stamp seen = *std::max_element(track_.last_hit.begin(), track_.last_hit.end());
   const double dt = std::max(0.0, terms_.scan.state.stamp - seen);
-  const double same = std::exp(-2 * kStartsAndStops * dt);
-  constexpr double kLeast = 1e-6;
-  const double stands = std::clamp(0.5 + (track_.stands - 0.5) * same, kLeast, 1 - kLeast);
+  const TwoMotions stands(track_.stands, dt), goes(track_.goes_along, dt);
   double moving = kMinusInfinity;  // of the vehicle that fits best
+  double along = kMinusInfinity;   // of what moves as the vehicle of the sensor
   for (std::size_t j = 0; j < log_density_.size(); ++j) {
     const double own = log_density_[j];
-    if (own == kMinusInfinity ||
-        terms_.model.classes[static_cast<ClassId>(j)].shape != ObjectShape::kVehicle)
-      continue;
+    if (own == kMinusInfinity || j == thing) continue;
+    along = std::max(along, own + logGoesAlong(j));
+    if (terms_.model.classes[static_cast<ClassId>(j)].shape != ObjectShape::kVehicle) continue;
     moving = std::max(moving, own);
-    const double d = still - own;  // of the mixture's log density over `own`, without overflow:
-    const double gain = d > 0 ? d + std::log(stands + (1 - stands) * std::exp(-d))
-                              : std::log(stands * std::exp(d) + (1 - stands));
-    pair_.log_class_evidence[j] += terms_.kinematic_exponent * gain;
+    pair_.log_class_evidence[j] += terms_.kinematic_exponent * stands.gain(still - own);
   }
-  if (moving == kMinusInfinity) return;
-  pair_.stands = 1 / (1 + (1 - stands) / stands * std::exp(moving - still));
+  if (moving > kMinusInfinity) pair_.stands = stands.posterior(still - moving);
+  constexpr double kStands = 1;  // [m/s] of the sensor's vehicle
+  if (along == kMinusInfinity || terms_.scan.state.ego.velocity.norm() < kStands) return;
+  pair_.log_class_evidence[thing] += terms_.kinematic_exponent * goes.gain(along - still);
+  pair_.goes_along = goes.posterior(along - still);
 }
 
 void PairTerms::finish() {
-  weighStanding();
+  weighMotions();
   pair_.log_likelihood = logSumExp(mixture_);
   if (pair_.log_likelihood > kMinusInfinity && terms_.model.params.shape_prior)
     pair_.log_prior += logShape(track_, m_);

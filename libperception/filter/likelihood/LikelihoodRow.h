@@ -52,9 +52,10 @@ class PairTerms {
   const ClassValues& mixture() const { return mixture_; }
 
  private:
-  /// Innovations of vehicles that are told by their shape, as evidence of the class: they may
-  /// stand.
-  void weighStanding();
+  /// Innovations of what is told by its shape, as evidence of the class: vehicles may stand, and
+  /// what is seen of a long thing may go along with the sensor.
+  void weighMotions();
+  double logGoesAlong(std::size_t j) const;
 
   const Track& track_;
   const ScanTerms& terms_;

@@ -19,8 +19,8 @@ struct PairLikelihood {
   ClassValues log_by_class;        ///< l_j: log p(z, label, score, detected | class j)
   ClassValues log_class_evidence;  ///< l_j with tempered label and innovations (method.md 5.6): for
                                    ///< the class update only
-  double stands = 0;               ///< Track::stands after it
-  ClassValues nis;                 ///< normalized innovation squared of each class filter
+  double stands = 0, goes_along = 0;  ///< Track::stands, Track::goes_along after it
+  ClassValues nis;                    ///< normalized innovation squared of each class filter
 };
 
 /// Likelihoods of one predicted track for all gated measurements of a scan.

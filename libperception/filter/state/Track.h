@@ -97,6 +97,9 @@ struct Track {
   /// Probability that it stands, if it is a vehicle: without it every view of a waiting car would
   /// say that it is rather something that never moves.
   double stands = 0.5;
+  /// Probability that what is seen of it goes along with the vehicle of the sensor, if it is a
+  /// thing: a beam meets a guard rail always at the same distance.
+  double goes_along = 0.5;
   Bank bank;  ///< one filter a class
   ClassId decided_class =
       -1;  ///< if >= 0 only this class's filter is updated ([filter] decide_class)

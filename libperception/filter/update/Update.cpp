@@ -182,7 +182,7 @@ Track hitTrack(Track predicted, const TrackLikelihoods& row, const PairLikelihoo
       weighedLookOf(track, m, scan, row.detection_by_class, model.classes);
   track.history = extendHistory(track.history, scan_index, pair.measurement);
   track.existence = model.params.existence_max;
-  track.stands = pair.stands;
+  track.stands = pair.stands, track.goes_along = pair.goes_along;
   track.last_in_view = scan.state.stamp;
   track.last_hit[modalityIndex(scan.modality)] = scan.state.stamp;
   ++track.hits[modalityIndex(scan.modality)];

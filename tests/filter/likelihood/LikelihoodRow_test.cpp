@@ -144,5 +144,60 @@ TEST(PlaceRow, IsThatOfTheGeneralWayAndSoIsTheUpdate) {
   EXPECT_GT(pairs, 100);
 }
 
+/// What a lidar has seen for a second ahead of its vehicle, which drives at `own` [m/s] along x;
+/// what is seen goes along at 3 m/s.
+struct SeenAlong {
+  FilterModel model = test::exactModel(test::linearClasses());
+  Track track;
+  TrackLikelihoods row;
+
+  SeenAlong(double own, bool told_by_shape) {
+    for (int j = 0; j < 2; ++j) {
+      ClassFilter f;
+      f.x << 10, 0, j == 0 ? 3 : 0, 0;
+      f.P.topLeftCorner<2, 2>() = 0.01 * Matrix2::Identity();
+      if (j == 0) f.P.bottomRightCorner<2, 2>() = 0.01 * Matrix2::Identity();
+      track.bank.push_back(f);
+      track.log_class.push_back(std::log(0.5));
+    }
+    track.existence = 0.9;
+    PositionModel::Params sensor = test::linearSensor();
+    sensor.classes[1] = sensor.classes[0];  // motion alone tells the class
+    for (int k = 1; k <= 10; ++k) {
+      MeasurementScan scan;
+      scan.model = std::make_shared<const PositionModel>(sensor);
+      scan.state.stamp = Stamp{std::int64_t{100000000} * k};
+      scan.state.ego.velocity = {own, 0};
+      Measurement m;
+      m.z = Vector2(10 + 0.3 * k, 0);
+      m.R = 0.01 * Matrix2::Identity();
+      m.seen = 3;
+      m.position = m.z;
+      if (told_by_shape) m.view = EvidenceView{0, 2, 50};
+      scan.measurements = {m};
+      for (int j = 0; j < 2; ++j)
+        predictClassFilter(model.classes[j], 0.1, track.bank[static_cast<std::size_t>(j)]);
+      row = likelihoodTable({track}, scan, model).tracks[0];
+      track = hitTrack(track, row, row.pairs.at(0), scan, static_cast<std::uint64_t>(k), model);
+    }
+  }
+  double pThing() const { return std::exp(track.log_class[1]); }
+};
+
+TEST(PairTerms, WhatGoesAlongWithTheVehicleMayBeAThingOfWhichOneBeamSeesAPart) {
+  const SeenAlong along(3, true);
+  EXPECT_GT(along.track.goes_along, 0.99);
+  EXPECT_GT(along.pThing(), 0.2);
+  for (const double own : {0.0, 1.5, 6.0}) {
+    const SeenAlong other(own, true);
+    EXPECT_LT(other.pThing(), 1e-3) << own;
+  }
+}
+
+TEST(PairTerms, WhatIsNotToldByItsShapeIsToldByItsMotion) {
+  const SeenAlong along(3, false);
+  EXPECT_LT(along.pThing(), 1e-3);
+}
+
 }  // namespace
 }  // namespace perception
