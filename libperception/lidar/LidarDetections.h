@@ -15,6 +15,9 @@
 
 namespace perception {
 
+/// Least trust of a return that is hardly doubted (assumed).
+inline constexpr float kHardlyDoubted = 0.95f;
+
 /// A cluster that may be a road user.
 struct JudgedCluster {
   std::vector<std::uint32_t> points;       ///< indices into the obstacles, ascending

@@ -101,16 +101,15 @@ void gatherObstacles(const LidarCloud& cloud, LidarDetections& found) {
 /// elsewhere of those that are doubted, for these alone may stand in a wake.
 void describeSolid(const SensorFrame& frame, const LidarCloud& cloud, const ObstacleParams& params,
                    const DirectionCells& cells, LidarDetections& found) {
-  constexpr float kHardlyDoubted = 0.05f;  // of a return (assumed)
   std::vector<std::uint32_t> slab = heightsBetween(
       found.height, static_cast<float>(params.height_min), static_cast<float>(params.height_max));
   if (frame.causes.weather <= 0) {
     std::vector<char> doubted(found.height.size(), 0);
     for (std::size_t k = 0; k < found.phantom.size(); ++k)
-      if (found.phantom[k] > kHardlyDoubted) doubted[found.obstacles[k]] = 1;
+      if (found.phantom[k] > 1 - kHardlyDoubted) doubted[found.obstacles[k]] = 1;
     const auto sure = [&](std::uint32_t i) {
       return !doubted[i] &&
-             (cloud.trust.empty() || cloud.trust[found.points.source[i]] >= 1 - kHardlyDoubted);
+             (cloud.trust.empty() || cloud.trust[found.points.source[i]] >= kHardlyDoubted);
     };
     slab.erase(std::remove_if(slab.begin(), slab.end(), sure), slab.end());
   }

@@ -9,8 +9,7 @@
 namespace perception {
 namespace {
 
-constexpr float kHardlyDoubted = 0.95f;  // least trust of a return (assumed)
-constexpr double kLeastFirm = 0.5;       // of the cluster (assumed)
+constexpr double kLeastFirm = 0.5;  // of the cluster (assumed)
 
 bool isLow(const LidarDetections& found, const std::vector<std::uint32_t>& points) {
   return std::all_of(points.begin(), points.end(),
