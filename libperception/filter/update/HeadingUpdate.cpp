@@ -91,8 +91,9 @@ void useHeading(const MeasuredHeading& seen, const FilterParams& params, ClassFi
   f.heading = nextFrontBack(f.heading, r.same, seen);
 }
 
-void findHeading(const Measurement& m, const std::optional<BirthState>& birth,
+bool findHeading(const Measurement& m, const std::optional<BirthState>& birth,
                  const FilterParams& p, ClassFilter& f) {
+  const bool was_oriented = f.oriented;
   const double box_extra = p.shape_yaw_sigma * p.shape_yaw_sigma;
   if (!f.oriented) {
     const double v = f.x.tail<2>().norm();
@@ -108,11 +109,27 @@ void findHeading(const Measurement& m, const std::optional<BirthState>& birth,
     if (y * y < kYawGate * (f.P(3, 3) + variance)) updateYaw(y, variance, f);
   }
   if (m.heading) useHeading(*m.heading, p, f, !m.sides);
-  if (!f.oriented) return;
+  if (!f.oriented) return false;
   if (m.sides) useShape(*m.sides, f);
   const bool back = f.heading.measured() ? asksForReversal(f.heading, f.x[2], f.P(2, 2), p.heading)
                                          : facesBack(f, p);
   if (back) reverse(f);
+  return !was_oriented;
+}
+
+void takeSizeOfClass(const ObjectClass& c, const SensorState& sensor, ClassFilter& f) {
+  const Vector2 sight = f.x.head<2>() - sensor.T_world_sensor.translation().head<2>();
+  if (sight.squaredNorm() <= 0) return;
+  const double radius = 0.25 * (f.extent.length + f.extent.width);
+  f.extent = {c.length, c.width, c.length_sigma * c.length_sigma, c.width_sigma * c.width_sigma};
+  const Vector2 axis(std::cos(f.x[3]), std::sin(f.x[3]));
+  const Vector2 along = axis.dot(sight.normalized()) * axis;
+  const auto move = [&](Vector4& x, Matrix4& P) {
+    x.head<2>() += (0.5 * f.extent.length - radius) * along;
+    P.topLeftCorner<2, 2>() += 0.25 * f.extent.var_length * along * along.transpose();
+  };
+  move(f.x, f.P);
+  for (ModeFilter& mode : f.modes) move(mode.x, mode.P);
 }
 
 bool boxDeniesAxis(const Measurement& m, const std::optional<BirthState>& birth,

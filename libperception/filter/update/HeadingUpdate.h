@@ -17,8 +17,14 @@ void useHeading(const MeasuredHeading& seen, const FilterParams& params, ClassFi
 /// Initializes the heading of a wheeled filter from a measured heading, the box of the measurement
 /// (`birth`), or its velocity, in this order (method.md 3.4; constant-velocity instead of two-point
 /// initialization). An oriented filter whose speed contradicts its front/back log-odds is reversed.
-void findHeading(const Measurement& m, const std::optional<BirthState>& birth,
+/// Whether the filter has not been oriented before and is now.
+bool findHeading(const Measurement& m, const std::optional<BirthState>& birth,
                  const FilterParams& params, ClassFilter& f);
+
+/// The size of a filter that has just found its heading: that of the class. What the edges have
+/// made of a disc is the width of the side that was seen, whichever it is, and no size (method.md
+/// 3.4). A front or rear that faces the sensor keeps its place.
+void takeSizeOfClass(const ObjectClass& c, const SensorState& sensor, ClassFilter& f);
 
 /// Whether the box of a lidar cluster, `birth`, repeatedly denies the axis of an oriented filter: a
 /// start along a chance motion of what was seen of it, at right angles to the object. Its extent

@@ -138,9 +138,11 @@ ClassFilter restartFilter(const ObjectClass& c, const BirthState& birth, const K
 /// Heading and extent of a class's filter by the heading and the box of the measurement; the whole
 /// filter anew where a box denies its axis.
 void updateShape(const ObjectClass& c, const Measurement& m, const std::optional<BirthState>& birth,
-                 const Track& track, const FilterModel& model, ClassFilter& f) {
+                 const Track& track, const SensorState& sensor, const FilterModel& model,
+                 ClassFilter& f) {
   if (boxDeniesAxis(m, birth, model.params, f)) f = startFilter(c, *birth, model);
-  if (c.motion->has_heading) findHeading(m, birth, model.params, f);
+  if (c.motion->has_heading && findHeading(m, birth, model.params, f) && m.view)
+    takeSizeOfClass(c, sensor, f);
   if (m.sides) {
     if (const auto yaw = lengthAxis(c, f, track, *m.sides))
       f.extent = updateExtent(f.extent, *m.sides, *yaw, model.params.side_sigma);
@@ -222,7 +224,7 @@ Track hitTrack(Track predicted, const TrackLikelihoods& row, const PairLikelihoo
     } else if (birth) {
       f = restartFilter(c, *birth, best_kinematics, model);
     }
-    updateShape(c, m, birth, track, model, f);
+    updateShape(c, m, birth, track, scan.state, model, f);
     track.log_class[i] +=
         pair.log_class_evidence[i] + model.params.kinematic_exponent * logSpeed(c, f, model);
   }
