@@ -23,16 +23,19 @@ const double kLogSureClass = std::log(0.95), kLogLikelyClass = std::log(0.5);
 constexpr double kShortestHeadway = 0.1, kDriving = 8, kOverlap = 0.5;
 /// [m/s] by which their speeds differ at most; [m] length of the longest vehicle with a trailer.
 constexpr double kSameSpeed = 1.5, kLongestTrain = 20;
+/// Deviations by which a cyclist is at most longer than the mean.
+constexpr double kCyclistSigmas = 4;
 
 struct Footprint {
   std::uint64_t id = 0;
-  Vector2 center, half;  // [m]
-  double corner2 = 0;    // [m^2] square of the distance from the center to a corner
-  double yaw = 0;        // [rad]
-  double area = 0;       // [m^2]
-  bool sure = false;     // of its class
-  bool vehicle = false;  // more likely than not
-  bool person = false;   // or a cyclist, more likely than not
+  Vector2 center, half;     // [m]
+  double corner2 = 0;       // [m^2] square of the distance from the center to a corner
+  double yaw = 0;           // [rad]
+  double area = 0;          // [m^2]
+  bool sure = false;        // of its class
+  bool vehicle = false;     // more likely than not
+  bool person = false;      // or a cyclist, more likely than not
+  bool no_cyclist = false;  // called one, but too long
   Stamp last_hit;
   bool fresh = true;  // of this scan
   bool oriented = false;
@@ -61,6 +64,9 @@ Footprint footprintOf(const Track& t, const FilterModel& model, Stamp now) {
   const ObjectShape shape = model.classes[best].shape;
   out.person = log_class >= kLogLikelyClass &&
                (shape == ObjectShape::kPedestrian || shape == ObjectShape::kCyclist);
+  out.no_cyclist = shape == ObjectShape::kCyclist &&
+                   f.extent.length > model.classes[best].length +
+                                         kCyclistSigmas * model.classes[best].length_sigma;
   out.area = 4 * out.half.x() * out.half.y();
   out.last_hit = *std::max_element(t.last_hit.begin(), t.last_hit.end());
   return out;
@@ -84,6 +90,14 @@ bool isTrain(const Footprint& a, const Footprint& b) {
   return std::abs(apart.y()) < std::max(a.half.y(), b.half.y()) &&
          (a.speed * along - b.speed * other).norm() < kSameSpeed && gap < most &&
          length + gap < kLongestTrain;
+}
+
+/// Whether the older of two tracks in one place is what a larger one, the younger, was taken for: a
+/// fragment of it, or a cyclist who is as long as a vehicle.
+bool isReplaced(const Footprint& older, const Footprint& younger, bool swallows, bool both) {
+  if (!younger.oriented) return false;
+  if (older.no_cyclist && younger.vehicle && younger.sure && !younger.no_cyclist) return true;
+  return !swallows && !both && !older.person;
 }
 
 /// The younger track's state with the older track's id and class, with all that has been counted in
@@ -135,8 +149,7 @@ DuplicateTable::DuplicateTable(const FilterModel& model, Stamp now, const TrackT
       const bool first = feet[i].id < feet[j].id;
       const std::size_t older = first ? i : j, younger = first ? j : i;
       Conflict conflict{older, younger, nullptr};
-      const bool fragment =
-          !swallows(older) && !both && feet[younger].oriented && !feet[older].person;
+      const bool fragment = isReplaced(feet[older], feet[younger], swallows(older), both);
       const bool stale = now - feet[older].last_hit > kUnseen && feet[younger].last_hit == now;
       if (stale && isGhost(*tracks[older]) && tracks[younger]->existence >= kThere)
         conflict = {younger, older, nullptr};

@@ -158,6 +158,36 @@ TEST(Duplicates, APersonWhomACarIsPutOverDoesNotBecomeTheCar) {
   EXPECT_EQ(stay(ObjectShape::kCyclist, 0.5).size(), 2U) << "hidden behind it";
 }
 
+TEST(Duplicates, ACyclistAsLongAsACarIsReplacedByTheCarInItsPlace) {
+  FilterModel model = test::threeClassModel();
+  model.params.merge_area = 2;
+  ObjectClass& cyclist = model.classes.classes[0];
+  cyclist.shape = ObjectShape::kCyclist;
+  cyclist.length = 1.8, cyclist.length_sigma = 0.2;
+  const auto stays = [&](double length, double car_probability) {
+    Track older = carWith(1, 0.999, 20, 0), car = carWith(2, 0.999, 3, 0);
+    for (Track* t : {&older, &car}) {
+      const std::size_t likeliest = t == &car ? 2 : 0;
+      const double probability = t == &car ? car_probability : 0.99;
+      t->bank.assign(3, t->bank[0]);
+      t->bank[0].extent = {length, 0.9, 0.1, 0.1};
+      t->bank[likeliest].oriented = true;
+      t->log_class.assign(3, std::log((1 - probability) / 2));
+      t->log_class[likeliest] = std::log(probability);
+    }
+    TrackTable tracks = {std::make_shared<const Track>(older), std::make_shared<const Track>(car)};
+    const DuplicateTable duplicates(model, kNow, tracks);
+    duplicates.appendReplacements(tracks);
+    const auto cells = duplicates.merged({0, 1});
+    EXPECT_EQ(cells.size(), 1U);
+    EXPECT_EQ(tracks[cells.front()]->id, 1U);
+    return tracks[cells.front()]->likeliestClass();
+  };
+  EXPECT_EQ(stays(5.2, 0.99), 2);
+  EXPECT_EQ(stays(2.5, 0.99), 0) << "a cyclist of this length may be";
+  EXPECT_EQ(stays(5.2, 0.8), 0) << "the car is not sure";
+}
+
 TEST(Duplicates, AClassGoesWithWhatHasBeenCountedInIt) {
   Track older = carWith(1, 0.999, 20, 0.5), younger = carWith(2, 0.999, 3, 0);
   older.length = {4.5, 0.1}, younger.length = {2, 1};
