@@ -134,15 +134,15 @@ void PairTerms::add(std::size_t j, const Density& density, double log_detection)
 
 namespace {
 
-/// One of two motions of an object, in the class update alone: p of each is known.
+/// One of two motions of an object, as evidence of its class alone.
 struct TwoMotions {
   double first;  ///< probability of the first one before the measurement
 
-  /// `was` [0, 1], drawn to 1/2 over `dt` [s].
-  TwoMotions(double was, double dt) {
+  /// `was` [0, 1], drawn to what is usual over `dt` [s].
+  TwoMotions(double was, double usual, double dt) {
     constexpr double kLeast = 1e-6;
     const double same = std::exp(-2 * kStartsAndStops * dt);
-    first = std::clamp(0.5 + (was - 0.5) * same, kLeast, 1 - kLeast);
+    first = std::clamp(usual + (was - usual) * same, kLeast, 1 - kLeast);
   }
   /// Of the mixture's log density over that of the second motion, without overflow; `d`: log
   /// density of the first over it.
@@ -155,18 +155,21 @@ struct TwoMotions {
 
 }  // namespace
 
-/// Log likelihood ratio of the object's velocity by its filter and that of the sensor's vehicle
-/// there, beside the density of the measurement.
+/// Log likelihood ratio of the velocity by the class's filter and that of the sensor's vehicle at
+/// that place. None in the vehicle's own way: a long thing there would be driven over, and what
+/// goes along is a vehicle ahead.
 double PairTerms::logGoesAlong(std::size_t j) const {
-  constexpr double kSlack = 0.3;  // [m/s]
+  constexpr double kOwnWay = 2, kSlack = 0.3;  // [m] to either side, [m/s] (assumed)
   const auto filter = track_.filterOf(j);
   const ClassFilter& f = track_.bank[filter];
-  const Kinematics k = kinematicsOf(terms_.model.classes[static_cast<ClassId>(filter)], f);
+  const Vector4 q = kinematicsOf(terms_.model.classes[static_cast<ClassId>(filter)], f).q.head<4>();
   const EgoState& ego = terms_.scan.state.ego;
-  const Vector2 arm = k.q.head<2>() - ego.T_world_ego.translation().head<2>();
+  const Vector2 arm = q.head<2>() - ego.T_world_ego.translation().head<2>();
+  const double aside = ego.velocity.x() * arm.y() - ego.velocity.y() * arm.x();  // [m^2/s]
+  if (std::abs(aside) < kOwnWay * ego.velocity.norm()) return kMinusInfinity;
   const Vector2 along = ego.velocity + ego.yaw_rate * Vector2(-arm.y(), arm.x());
   const double variance = f.oriented ? f.P(2, 2) : 0.5 * (f.P(2, 2) + f.P(3, 3));
-  return -0.5 * (k.q.segment<2>(2) - along).squaredNorm() / (variance + kSlack * kSlack);
+  return -0.5 * (q.tail<2>() - along).squaredNorm() / (variance + kSlack * kSlack);
 }
 
 void PairTerms::weighMotions() {
@@ -177,7 +180,7 @@ void PairTerms::weighMotions() {
   if (still == kMinusInfinity) return;
   const Stamp seen = *std::max_element(track_.last_hit.begin(), track_.last_hit.end());
   const double dt = std::max(0.0, terms_.scan.state.stamp - seen);
-  const TwoMotions stands(track_.stands, dt), goes(track_.goes_along, dt);
+  const TwoMotions stands(track_.stands, 0.5, dt), goes(track_.goes_along, kGoesAlong, dt);
   double moving = kMinusInfinity;  // of the vehicle that fits best
   double along = kMinusInfinity;   // of what moves as the vehicle of the sensor
   for (std::size_t j = 0; j < log_density_.size(); ++j) {

@@ -84,6 +84,9 @@ struct ReachableDisc {
   Stamp expires{std::numeric_limits<std::int64_t>::max()};
 };
 
+/// Of things what is seen of which goes along with the vehicle of the sensor, at birth (assumed).
+inline constexpr double kGoesAlong = 0.2;
+
 /// One object in a hypothesis. Immutable, since hypotheses share tracks.
 struct Track {
   std::uint64_t id = 0;       ///< birthId(); the same in all hypotheses
@@ -99,7 +102,7 @@ struct Track {
   double stands = 0.5;
   /// Probability that what is seen of it goes along with the vehicle of the sensor, if it is a
   /// thing: a beam meets a guard rail always at the same distance.
-  double goes_along = 0.5;
+  double goes_along = kGoesAlong;
   Bank bank;  ///< one filter a class
   ClassId decided_class =
       -1;  ///< if >= 0 only this class's filter is updated ([filter] decide_class)

@@ -144,17 +144,17 @@ TEST(PlaceRow, IsThatOfTheGeneralWayAndSoIsTheUpdate) {
   EXPECT_GT(pairs, 100);
 }
 
-/// What a lidar has seen for a second ahead of its vehicle, which drives at `own` [m/s] along x;
-/// what is seen goes along at 3 m/s.
+/// What a lidar has seen for a second, `aside` [m] of the way of its vehicle, which drives at `own`
+/// [m/s] along x; what is seen goes along at 3 m/s.
 struct SeenAlong {
   FilterModel model = test::exactModel(test::linearClasses());
   Track track;
   TrackLikelihoods row;
 
-  SeenAlong(double own, bool told_by_shape) {
+  SeenAlong(double own, double aside, bool told_by_shape) {
     for (int j = 0; j < 2; ++j) {
       ClassFilter f;
-      f.x << 10, 0, j == 0 ? 3 : 0, 0;
+      f.x << 10, aside, j == 0 ? 3 : 0, 0;
       f.P.topLeftCorner<2, 2>() = 0.01 * Matrix2::Identity();
       if (j == 0) f.P.bottomRightCorner<2, 2>() = 0.01 * Matrix2::Identity();
       track.bank.push_back(f);
@@ -169,7 +169,7 @@ struct SeenAlong {
       scan.state.stamp = Stamp{std::int64_t{100000000} * k};
       scan.state.ego.velocity = {own, 0};
       Measurement m;
-      m.z = Vector2(10 + 0.3 * k, 0);
+      m.z = Vector2(10 + 0.3 * k, aside);
       m.R = 0.01 * Matrix2::Identity();
       m.seen = 3;
       m.position = m.z;
@@ -185,18 +185,22 @@ struct SeenAlong {
 };
 
 TEST(PairTerms, WhatGoesAlongWithTheVehicleMayBeAThingOfWhichOneBeamSeesAPart) {
-  const SeenAlong along(3, true);
+  const SeenAlong along(3, 4, true);
   EXPECT_GT(along.track.goes_along, 0.99);
-  EXPECT_GT(along.pThing(), 0.2);
+  EXPECT_GT(along.pThing(), 0.1);
   for (const double own : {0.0, 1.5, 6.0}) {
-    const SeenAlong other(own, true);
+    const SeenAlong other(own, 4, true);
     EXPECT_LT(other.pThing(), 1e-3) << own;
   }
 }
 
 TEST(PairTerms, WhatIsNotToldByItsShapeIsToldByItsMotion) {
-  const SeenAlong along(3, false);
-  EXPECT_LT(along.pThing(), 1e-3);
+  EXPECT_LT(SeenAlong(3, 4, false).pThing(), 1e-3);
+}
+
+TEST(PairTerms, WhatGoesAlongInTheOwnWayIsAVehicleAhead) {
+  EXPECT_LT(SeenAlong(3, 0, true).pThing(), 1e-3);
+  EXPECT_LT(SeenAlong(3, -1.5, true).pThing(), 1e-3);
 }
 
 /// A piece of hedge is cut otherwise in each scan, so that the filter of what never moves loses it.
