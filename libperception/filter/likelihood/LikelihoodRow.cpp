@@ -12,9 +12,6 @@ namespace {
 
 constexpr AxisMask kPlaceSeen = 3;       // x and y
 constexpr double kStartsAndStops = 0.1;  // [1/s] rate at which vehicles do either (assumed)
-/// A NIS beyond which a cluster does not say more against a class: the class's filter has lost the
-/// object, and starts again from the cluster (judged on recordings, docs/decisions/filter.md).
-constexpr double kMostSurprise = 40;
 
 /// Innovation covariance of a class filter without R of the measurement.
 struct ExpectedPlace {
@@ -61,12 +58,6 @@ PlaceResidual residualOf(const ExpectedPlace& e, const Measurement& m) {
   if (!(xx > 0) || !(rest > 0)) return {};
   const double dx = m.z[0] - e.x, dy = (m.z[1] - e.y) - l * dx;
   return {dx * dx / xx + dy * dy / rest, xx * rest};
-}
-
-/// Log density as evidence of the class.
-double logTold(const Density& density, const Measurement& m) {
-  const double beyond = m.view ? std::max(0.0, density.nis - kMostSurprise) : 0;
-  return density.log_density + 0.5 * beyond;
 }
 
 }  // namespace
@@ -124,9 +115,9 @@ void PairTerms::add(std::size_t j, const Density& density, double log_detection)
   // which their filters do not estimate.
   pair_.log_by_class[j] =
       density.log_density + terms_.labelAndScore(k, j) + log_detection + heading;
-  log_density_[j] = logTold(density, m_);
+  log_density_[j] = density.log_density;
   pair_.log_class_evidence[j] =
-      terms_.kinematic_exponent * log_density_[j] +
+      terms_.kinematic_exponent * density.log_density +
       (evidence_ ? evidence_->added(j) : terms_.label_exponent * terms_.label(k, j)) +
       terms_.detection_exponent * log_detection;
   mixture_[j] = track_.log_class[j] + pair_.log_by_class[j];

@@ -203,28 +203,5 @@ TEST(PairTerms, WhatGoesAlongInTheOwnWayIsAVehicleAhead) {
   EXPECT_LT(SeenAlong(3, -1.5, true).pThing(), 1e-3);
 }
 
-/// A piece of hedge is cut otherwise in each scan, so that the filter of what never moves loses it.
-TEST(PairTerms, ALostFilterOfAClusterSaysNoMoreAgainstItsClass) {
-  const RowWorld w;
-  Rng rng({22, 0, 0, 0});
-  Track track = w.track(rng);
-  track.decided_class = -1;
-  ClassValues detection;
-  detection.assign(track.bank.size(), 0.9);
-  const auto evidence = [&](bool told_by_shape, double nis, PairLikelihood& pair) {
-    MeasurementScan scan = scanOf(w, {track}, rng, true);
-    if (told_by_shape) scan.measurements[0].view = EvidenceView{0.1, 3, 100};
-    const ScanTerms terms(scan, w.model);
-    PairTerms sum(track, detection, 0, terms, pair);
-    sum.add(0, {-0.5 * nis, nis}, 0);
-    return pair.log_class_evidence[0];
-  };
-  PairLikelihood far, near;
-  EXPECT_EQ(evidence(true, 40, near), evidence(true, 400, far));
-  EXPECT_LT(evidence(true, 40, near), evidence(true, 30, far));
-  EXPECT_LT(evidence(false, 400, far), evidence(false, 40, near)) << "a detector knows its object";
-  EXPECT_LT(far.log_by_class[0], near.log_by_class[0]) << "associations know all of it";
-}
-
 }  // namespace
 }  // namespace perception
