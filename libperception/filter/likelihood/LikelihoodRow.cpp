@@ -146,9 +146,9 @@ struct TwoMotions {
 
 }  // namespace
 
-/// Log likelihood ratio of the velocity by the class's filter and that of the sensor's vehicle at
-/// that place. None in the vehicle's own way: a long thing there would be driven over, and what
-/// goes along is a vehicle ahead.
+/// How well the velocity by the class's filter agrees with that of the sensor's vehicle at the
+/// object's place. In the vehicle's own way no thing goes along: a long one would be driven over,
+/// so that what goes along there is a vehicle ahead.
 double PairTerms::logGoesAlong(std::size_t j) const {
   constexpr double kOwnWay = 2, kSlack = 0.3;  // [m] to either side, [m/s] (assumed)
   const auto filter = track_.filterOf(j);

@@ -55,6 +55,7 @@ class PairTerms {
   /// Innovations of what is told by its shape, as evidence of the class: vehicles may stand, and
   /// what is seen of a long thing may go along with the sensor.
   void weighMotions();
+  /// Log likelihood that what filter j tracks goes along with the sensor's vehicle; at most 0.
   double logGoesAlong(std::size_t j) const;
 
   const Track& track_;

@@ -84,7 +84,7 @@ struct ReachableDisc {
   Stamp expires{std::numeric_limits<std::int64_t>::max()};
 };
 
-/// Of things what is seen of which goes along with the vehicle of the sensor, at birth (assumed).
+/// Share of newborn things of which what is seen goes along with the sensor's vehicle (assumed).
 inline constexpr double kGoesAlong = 0.2;
 
 /// One object in a hypothesis. Immutable, since hypotheses share tracks.
