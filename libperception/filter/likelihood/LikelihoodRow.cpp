@@ -6,6 +6,7 @@
 #include "libperception/core/math/LogMath.h"
 #include "libperception/filter/likelihood/AssignmentPrior.h"
 #include "libperception/filter/likelihood/Gating.h"
+#include "libperception/filter/state/ClassFilterMotion.h"
 
 namespace perception {
 namespace {
