@@ -39,7 +39,8 @@ class Figures:
         if key.startswith("false"):
             name = "per_instant" if key == "false" else "classified_per_instant"
             return [r["false_objects"]["all"][name] or 0.0 for r in self.runs]
-        return [r["one_to_one"]["all"][key] or 0.0 for r in self.runs]
+        pairing = "one_to_one" if key == "id_switches" else "closest"
+        return [r[pairing]["all"][key] or 0.0 for r in self.runs]
 
     def worst(self, key, largest=True):
         return (max if largest else min)(self.values(key))
@@ -67,8 +68,9 @@ def table(paths):
     found = groups(paths)
     text = []
     for (tag, reach), figures in found.items():
-        text.append(f"{tag.split('-')[1]} {reach}: {figures.line()}")
-    return found, "; ".join(text).replace("L.blind", "L blind").replace("LR", "L+R").replace("CL", "C+L")
+        sensors = tag.split("-")[1].replace(".", " ").replace("LR", "L+R").replace("CL", "C+L")
+        text.append(f"{sensors}, {reach}: {figures.line()}")
+    return found, "; ".join(text)
 
 
 def kitti_0000(paths):
@@ -144,6 +146,8 @@ def matched(run, truth, reach):
             continue
         pairs = []
         for i, box in enumerate(boxes):
+            if not box["x"]:  # an area of the image
+                continue
             place = (float(box["x"]), float(box["y"]))
             if int(box["ignore"]) or int(box["occluded"]) > 2 or math.dist(place, ego[frame]) > reach:
                 continue
