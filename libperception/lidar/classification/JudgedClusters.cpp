@@ -7,6 +7,7 @@
 #include "libperception/lidar/classification/CloudedSurfaces.h"
 #include "libperception/lidar/classification/PhantomPrior.h"
 #include "libperception/lidar/classification/VehiclePieces.h"
+#include "libperception/lidar/classification/ViewEnd.h"
 #include "libperception/lidar/outline/BoxFit.h"
 #include "libperception/lidar/segments/LooseReturns.h"
 #include "libperception/measurement/models/FootprintInView.h"
@@ -93,7 +94,6 @@ void dropFragments(const LidarDetections& found, std::vector<JudgedCluster>& jud
     for (const Vector2& p : placesOf(j)) sum += p;
     centers.push_back(sum / static_cast<double>(j.points.size()));
   }
-  const Vector2 sensor = found.points.sensor.head<2>();
   std::vector<char> fragment(judged.size(), 0);
   for (std::size_t v = 0; v < judged.size(); ++v) {
     if (!isVehicle(judged[v], 0)) continue;
@@ -109,7 +109,7 @@ void dropFragments(const LidarDetections& found, std::vector<JudgedCluster>& jud
           (centers[i] - centers[v]).squaredNorm() <= reach * reach)
         near.push_back(i);
     if (near.empty()) continue;
-    const auto box = fitBox(places, sensor, true, true, BoxParams{});
+    const auto box = fitBox(places, found.points.sensor.head<2>(), true, true, BoxParams{});
     if (!box) continue;
     const Vector2 along(std::cos(box->yaw), std::sin(box->yaw));
     for (const std::size_t i : near) {
@@ -131,8 +131,7 @@ void dropFragments(const LidarDetections& found, std::vector<JudgedCluster>& jud
 /// Drops the loose returns of likely vehicles: their plume, their spray.
 void dropLoose(const LidarDetections& found, const DirectionCells& cells,
                std::vector<JudgedCluster>& judged) {
-  constexpr double kSureVehicle =
-      2;  // evidence: with one in ten clusters, as likely as not (assumed)
+  constexpr double kSureVehicle = 2;  // evidence: of one in ten, as likely as not (assumed)
   for (JudgedCluster& j : judged) {
     if (!isVehicle(j, kSureVehicle)) continue;
     std::vector<std::uint32_t> points, kept;
@@ -249,6 +248,7 @@ class RoadUserCollector {
 Judgement judgedClusters(const LidarDetections& found, const LidarCloud& cloud,
                          const DirectionCells& cells, const ClusterClassifier& classifier,
                          const CausesAt& causes_at, double reach) {
+  const ViewEnd end(found, cells);
   const auto judge = [&](DescribedCluster& cluster) {
     Probabilities& p = cluster.probabilities;
     p[static_cast<std::size_t>(ClusterKind::kThing)] = 1;
@@ -257,19 +257,19 @@ Judgement judgedClusters(const LidarDetections& found, const LidarCloud& cloud,
         static_cast<double>(cluster.descriptor[static_cast<std::size_t>(Feature::kRange)]);
     p = withinSize(classifier.probabilities(cluster.descriptor), cluster.descriptor,
                    found.points.sensor.z() + found.top_slope * range);
+    end.weigh(cluster);
     return roadUser(p) < kSureWhole &&
            at(p, ClusterKind::kThing) + at(p, ClusterKind::kPhantom) < kSureThing;
   };
   const ClusterDescriber describer(found, cloud, cells);
   auto clusters = describedClusters(found, describer, judge, reach);
-  const std::size_t n = clusters.size();
   std::vector<char> stands = standing(clusters);
   joinPieces(found, describer, judge, clusters, stands);
   Judgement judgement;
   std::vector<JudgedCluster>& judged = judgement.clusters;
   RoadUserCollector collector(found, classifier, judged);
   judgement.phantom.assign(found.obstacles.size(), PlacedReturns::kNoCluster);
-  for (std::size_t i = 0; i < n; ++i) {
+  for (std::size_t i = 0; i < clusters.size(); ++i) {
     if (!stands[i]) continue;
     const bool asks = causes_at && clusters[i].described;
     const CausesHere causes =
