@@ -87,7 +87,11 @@ void ViewEnd::weigh(DescribedCluster& cluster) const {
     return;
   const double factor = std::exp(evidence(cluster.segment.points));
   pedestrian *= factor, cyclist *= factor;
-  for (double& p : cluster.probabilities) p /= 1 - (1 - factor) * person;
+  // What is no surface stays as likely as it was, since the safety grid doubts what may be none.
+  double& phantom = cluster.probabilities[static_cast<std::size_t>(ClusterKind::kPhantom)];
+  const double was = phantom, surface = 1 - was;
+  for (double& p : cluster.probabilities) p *= surface / (surface - (1 - factor) * person);
+  phantom = was;
 }
 
 }  // namespace perception

@@ -97,5 +97,20 @@ TEST(ViewEnd, SaysWhatAClusterIs) {
   EXPECT_NEAR(cut - whole, Post(postOf(8, 3)).evidence(), 1e-3);
 }
 
+TEST(ViewEnd, LeavesTheChanceOfAPhantomToTheGrid) {
+  Post post(postOf(8, 3));
+  DescribedCluster cluster;
+  cluster.segment.points = post.scan.within(2, 45, -1, 1);
+  cluster.descriptor = post.scan.describe(cluster.segment.points);
+  cluster.probabilities = {0.6, 0, 0, 0.2, 0.1, 0.1};
+  post.end.weigh(cluster);
+  EXPECT_LT(cluster.probabilities[0], 0.1) << "a person";
+  EXPECT_GT(cluster.probabilities[3], 0.5) << "a thing";
+  EXPECT_DOUBLE_EQ(cluster.probabilities[4], 0.1) << "a phantom";
+  double sum = 0;
+  for (const double p : cluster.probabilities) sum += p;
+  EXPECT_NEAR(sum, 1, 1e-12);
+}
+
 }  // namespace
 }  // namespace perception
