@@ -270,6 +270,8 @@ LikelihoodTable likelihoodTable(const std::vector<Track>& predicted,
   });
   parallelFor(scan.measurements.size(),
               [&](std::size_t k) { table.births[k] = birthLikelihood(k, terms); });
+  for (TrackLikelihoods& row : table.tracks)
+    for (PairLikelihood& pair : row.pairs) pair.phantom = table.births[pair.measurement].phantom;
   return table;
 }
 

@@ -21,6 +21,7 @@ struct PairLikelihood {
                                    ///< the class update only
   double stands = 0, goes_along = 0;  ///< Track::stands, Track::goes_along after it
   ClassValues nis;                    ///< normalized innovation squared of each class filter
+  double phantom = 0;                 ///< BirthLikelihood::phantom of the measurement
 };
 
 /// Likelihoods of one predicted track for all gated measurements of a scan.

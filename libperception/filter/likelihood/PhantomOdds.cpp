@@ -9,7 +9,9 @@ namespace perception {
 namespace {
 
 // All assumed.
-constexpr double kSure = 0.999;                 // P(phantom), at most
+constexpr double kSure = 0.999;  // P(phantom), at most
+constexpr double kLate = 0.35;   // [s]
+constexpr double kLeastDetection = 0.1;
 constexpr double kDrift = 3, kDriftSpread = 1;  // [m/s] of spray, by the wind
 
 Vector2 placeOf(const Track& track) {
@@ -44,11 +46,31 @@ double weighed(double before, double as_phantom, double as_object) {
   return phantom + object > 0 ? phantom / (phantom + object) : before;
 }
 
+/// Whether a lidar's track stands where a vehicle came by, as was not known when it was born, but
+/// is since a moment ago.
+bool isInLateWake(const Track& track, const MeasurementScan& scan) {
+  if (!scan.wakes || scan.wakes->density <= 0 || scan.modality != Modality::kLidar) return false;
+  const Stamp now = scan.state.stamp;
+  const Vector2 place = placeOf(track);
+  if (!scan.wakes->cameBy(place, now)) return false;
+  for (const Stamp then : {track.birth, now + -kLate})
+    if (scan.wakes->age(place, then) || scan.wakes->cameBy(place, then)) return false;
+  return true;
+}
+
+/// P(phantom) of a track whose wake is known only now: of a newborn there that was seen as often.
+double lateDoubt(double newborn, double seen, double detection, const Track& track) {
+  const int hits = track.hits[modalityIndex(Modality::kLidar)] - 1;  // without that of this scan
+  const double again = std::pow(seen / std::max(detection, kLeastDetection), std::max(0, hits - 1));
+  return weighed(newborn, again, 1);
+}
+
 }  // namespace
 
 double phantomDensity(const Vector2& place, const MeasurementScan& scan) {
   if (!scan.wakes || scan.wakes->density <= 0) return 0;
-  return scan.wakes->age(place, scan.state.stamp) ? scan.wakes->density : 0;
+  const WakeMap::Past past = scan.wakes->pastOf(place, scan.state.stamp);
+  return past.came_by || scan.wakes->age(place, scan.state.stamp) ? scan.wakes->density : 0;
 }
 
 double detectionWithPhantom(const Track& track, const MeasurementScan& scan, double detection) {
@@ -59,8 +81,13 @@ double phantomOdds(const Measurement& m) {
   return m.phantom ? m.phantom->probability / (1 - std::min(m.phantom->probability, kSure)) : 0;
 }
 
-void phantomHit(const Measurement& m, double shape, const MeasurementScan& scan, double detection,
-                const FilterModel& model, Track& track) {
+void phantomHit(const Measurement& m, double shape, double newborn, const MeasurementScan& scan,
+                double detection, const FilterModel& model, Track& track) {
+  if (newborn > track.phantom && isInLateWake(track, scan)) {
+    track.phantom = std::max(
+        track.phantom,
+        lateDoubt(newborn, phantomDetection(track, scan) * drifts(track, model), detection, track));
+  }
   if (track.phantom <= 0) return;
   const double seen = phantomDetection(track, scan) * drifts(track, model);
   const double without = weighed(track.phantom, seen, detection);

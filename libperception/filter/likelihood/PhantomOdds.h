@@ -18,8 +18,9 @@ double phantomOdds(const Measurement& m);
 double detectionWithPhantom(const Track& track, const MeasurementScan& scan, double detection);
 /// After the update by a measurement; `detection`: P_D as an object; `shape`: what this look adds
 /// to the log odds of a phantom (rememberEvidence()).
-void phantomHit(const Measurement& m, double shape, const MeasurementScan& scan, double detection,
-                const FilterModel& model, Track& track);
+/// `newborn`: P(phantom) of a track that would be born from the measurement.
+void phantomHit(const Measurement& m, double shape, double newborn, const MeasurementScan& scan,
+                double detection, const FilterModel& model, Track& track);
 /// After a missed detection.
 void phantomMiss(const MeasurementScan& scan, double detection, Track& track);
 

@@ -233,7 +233,7 @@ Track hitTrack(Track predicted, const TrackLikelihoods& row, const PairLikelihoo
   const double shape = look ? rememberEvidence(*look, scan, track) : 0;
   updateSizes(m, axisOf(model, track), model, track);
   clampClasses(model.params.class_epsilon, track.log_class);
-  phantomHit(m, shape, scan, row.detection, model, track);
+  phantomHit(m, shape, pair.phantom, scan, row.detection, model, track);
   decideClass(model, pair.nis[static_cast<std::size_t>(best)] > surprisingNis(axes_seen), track);
   return track;
 }

@@ -62,6 +62,7 @@ std::optional<double> WakeMap::age(const Vector2& place, Stamp now) const {
   for (auto v = vehicles_.rbegin(); v != vehicles_.rend(); ++v) {  // the last vehicle counts
     const double age = now - v->stamp;
     if (age > kLife) break;
+    if (age < 0) continue;  // as was known at `now`
     const double moved = age <= kPresent ? age * v->speed : 0;
     const Vector2 d = place - v->center - moved * v->along;
     const double ahead = d.dot(v->along), behind = -v->half_length - ahead;  // [m] of the rear
@@ -79,7 +80,7 @@ WakeMap::Past WakeMap::pastOf(const Vector2& place, Stamp now) const {
   const bool came = std::any_of(vehicles_.begin(), vehicles_.end(), [&](const VehicleFootprint& v) {
     if (v.came <= 0) return false;
     const double age = now - v.stamp;
-    if (age <= kPresent || age > kLife) return false;
+    if (age < 0 || age > kLife) return false;
     const Vector2 d = place - v.center;
     const double behind = -v.half_length - d.dot(v.along);  // [m] of the rear
     return behind > 0 && behind <= v.came &&
@@ -90,7 +91,8 @@ WakeMap::Past WakeMap::pastOf(const Vector2& place, Stamp now) const {
 
 double WakeMap::area(Stamp now) const {
   double area = 0;
-  for (const VehicleFootprint& v : vehicles_) area += 2 * v.advanced * halfWidth(v, now - v.stamp);
+  for (const VehicleFootprint& v : vehicles_)
+    area += 2 * (v.advanced + v.came) * halfWidth(v, now - v.stamp);
   return area;
 }
 

@@ -1,4 +1,5 @@
 #pragma once
+#include <deque>
 #include <map>
 #include <memory>
 #include <vector>
@@ -33,13 +34,21 @@ class WakeWatch {
     double phantoms = 0, area = 0;  ///< clusters, [m^2] of wakes; remembered
     Stamp stamp;
   };
+  /// A vehicle whose track was lost.
+  struct Lost {
+    Stamp since;
+    VehicleFootprint vehicle;  ///< where it must be now
+  };
   void count(const MeasurementScan& scan, Seen& seen) const;
   void addVehicles(Stamp stamp, const Hypothesis& hypothesis);
+  void goOn(Stamp stamp);
 
   const std::vector<PipelineSetup::Sensor>& sensors_;
   const ClassTable& classes_;
-  std::vector<Seen> seen_;               ///< by sensor
-  std::map<std::uint64_t, Stamp> last_;  ///< by track: its last footprint
+  std::vector<Seen> seen_;                                      ///< by sensor
+  std::map<std::uint64_t, std::deque<VehicleFootprint>> last_;  ///< by track: its footprints
+  std::map<std::uint64_t, Lost> lost_;                          ///< by track
+  std::deque<VehicleFootprint> gone_;  ///< the ways that lost vehicles must have gone, by time
   WakeMap wakes_;
 };
 

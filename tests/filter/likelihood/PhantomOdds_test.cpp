@@ -78,6 +78,35 @@ TEST(PhantomOdds, WhatMovesIsAnObject) {
   EXPECT_GT(world.realAfter(0.8), 0.95);
 }
 
+/// P(a real object) of what stands at (10, `y`) and is seen for a second, where it becomes known at
+/// 0.3 s that a car came by at y = 5.
+double realAsAWakeBecomesKnown(double y, int from) {
+  const WakeWorld world;
+  CRbpfTracker tracker(world.model, ParticleFilterParams{}.toMrpt(), 1);
+  const auto sensor = std::make_shared<const PositionModel>(world.params);
+  VehicleFootprint car;
+  car.stamp = Stamp::fromSeconds(1000.3);
+  car.center = {20, 5}, car.half_length = 2, car.half_width = 1;
+  car.speed = 20, car.came = 20;
+  const auto wakes = std::make_shared<WakeMap>();
+  wakes->add(car);
+  wakes->density = 1000;
+  for (int k = from; k <= 4; ++k) {
+    auto scan = test::positionScan(sensor, 0.1 * k, {{10, y, 1}});
+    if (k == 4) scan.wakes = wakes;
+    EXPECT_TRUE(tracker.process(scan));
+  }
+  double real = 0;
+  for (const auto& track : tracker.mapHypothesis().tracks) real = std::max(real, track->real());
+  return real;
+}
+
+TEST(PhantomOdds, WhatWasBornInAWakeThatIsKnownOnlyLaterBecomesDoubtfulThen) {
+  EXPECT_LT(realAsAWakeBecomesKnown(5, 1), 0.5);
+  EXPECT_GT(realAsAWakeBecomesKnown(12, 1), 0.95) << "beside it";
+  EXPECT_GT(realAsAWakeBecomesKnown(5, -30), 0.95) << "it stood there for three seconds before";
+}
+
 TEST(PhantomOdds, OutsideOfTheWakeNothingChanges) {
   WakeWorld beside, dry;
   beside.start = dry.start = {10, 12};

@@ -25,6 +25,7 @@ TEST(WakeMap, APlaceIsAsOldAsTheLastVehicleThatWasThere) {
   ASSERT_TRUE(age);
   EXPECT_NEAR(*age, 0.9, 0.06);  // the rear, 2.25 m behind the center, left it at 2.11 s
   EXPECT_FALSE(wakes.age({64, 0}, Stamp::fromSeconds(3))) << "ahead of the car";
+  EXPECT_FALSE(wakes.age({50, 0}, Stamp::fromSeconds(2))) << "as was known then";
   EXPECT_NEAR(wakes.age({60, 0}, Stamp::fromSeconds(3)).value_or(-1), 0, 1e-9) << "on the car";
 }
 
@@ -62,6 +63,8 @@ TEST(WakeMap, AVehicleCameByBehindItsFirstFootprint) {
   EXPECT_FALSE(wakes.cameBy({-10, 3}, now)) << "beside";
   EXPECT_FALSE(wakes.cameBy({10, 0}, now)) << "ahead";
   EXPECT_FALSE(wakes.age({-10, 0}, now)) << "no wake of phantoms that were counted";
+  EXPECT_TRUE(wakes.cameBy({-10, 0}, car.stamp)) << "at once";
+  EXPECT_FALSE(wakes.cameBy({-10, 0}, car.stamp + -0.1)) << "as was known before it was seen";
   VehicleFootprint next = car;
   next.stamp = now, next.center = {-10, 0}, next.came = 0;
   wakes.add(next);

@@ -71,6 +71,54 @@ TEST(WakeWatch, PhantomsAreAsFrequentWhateverTheClutter) {
   EXPECT_NEAR(loud.after(20, {{10, 0}}).wakes->density, few / 10, 1e-9 * few);
 }
 
+TEST(WakeWatch, ALostVehicleLeavesAWakeWhereItMustHaveGoneButNotForTheGrid) {
+  World world;
+  world.after(20, {{10, 0}});
+  for (int k = 20; k < 30; ++k) world.watch.add(0, world.scanAt(0.1 * k, {}), Hypothesis());
+  MeasurementScan scan = world.scanAt(3, {});
+  world.watch.apply(0, scan, world.clutter_per_scan);
+  ASSERT_TRUE(scan.wakes);
+  EXPECT_TRUE(scan.wakes->cameBy({49, 0}, scan.state.stamp));
+  EXPECT_FALSE(scan.wakes->cameBy({60, 0}, scan.state.stamp)) << "it is not there yet";
+  EXPECT_FALSE(scan.wakes->cameBy({50, 4}, scan.state.stamp)) << "beside";
+  EXPECT_FALSE(world.watch.at(scan.state.stamp)->cameBy({49, 0}, scan.state.stamp));
+  for (int k = 30; k < 80; ++k) world.watch.add(0, world.scanAt(0.1 * k, {}), Hypothesis());
+  MeasurementScan later = world.scanAt(8, {});
+  world.watch.apply(0, later, world.clutter_per_scan);
+  EXPECT_FALSE(later.wakes && later.wakes->cameBy({100, 0}, later.state.stamp));
+}
+
+// Drawn back into its cloud it seems slow in the end.
+TEST(WakeWatch, ALostVehicleGoesOnAsItDroveAllTheTime) {
+  World world;
+  world.after(20, {{10, 0}});
+  Track car = *World::carAt(1.9, 20).tracks[0];
+  car.bank[0].x = Vector4(39, 0, 8, 3), car.stamp = Stamp::fromSeconds(1002);
+  world.watch.add(0, world.scanAt(2, {}), Hypothesis(TrackTable{std::make_shared<Track>(car)}));
+  for (int k = 21; k < 30; ++k) world.watch.add(0, world.scanAt(0.1 * k, {}), Hypothesis());
+  MeasurementScan scan = world.scanAt(3, {});
+  world.watch.apply(0, scan, world.clutter_per_scan);
+  EXPECT_TRUE(scan.wakes->cameBy({53, 0}, scan.state.stamp));
+}
+
+TEST(WakeWatch, AVehicleThatBecomesSlowIsNotLost) {
+  World world;
+  world.after(20, {{10, 0}});
+  for (int k = 20; k < 30; ++k) world.watch.add(0, world.scanAt(0.1 * k, {}), World::carAt(2, 4));
+  MeasurementScan scan = world.scanAt(3, {});
+  world.watch.apply(0, scan, world.clutter_per_scan);
+  EXPECT_FALSE(scan.wakes->cameBy({49, 0}, scan.state.stamp));
+}
+
+TEST(WakeWatch, PhantomsWhereAVehicleMustHaveComeAreSeenInItsWake) {
+  World world;
+  world.watch.add(0, world.scanAt(0, {{-10, 0}}), World::carAt(0, 20));
+  MeasurementScan scan = world.scanAt(0.1, {});
+  world.watch.apply(0, scan, world.clutter_per_scan);
+  ASSERT_TRUE(scan.wakes);
+  EXPECT_GT(scan.wakes->density, 0);
+}
+
 TEST(WakeWatch, InClearAirThereAreNoWakes) {
   EXPECT_FALSE(World().after(20, {}).wakes);
   EXPECT_FALSE(World().after(20, {{10, 8}}).wakes) << "phantoms beside the way of the car";
