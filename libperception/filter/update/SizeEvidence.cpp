@@ -26,6 +26,10 @@ constexpr double kTallest = 4, kWidest = 4;  // [m] of those, which have any siz
 /// than their vehicle (assumed).
 constexpr double kShareAcross = 0.1, kShareOfTwo = 0.05;
 constexpr double kMostSigmas = 4;  // by which vehicles are longer than the mean of their class
+/// What is longer than a car is two in one cluster, or a truck. Of 411 clusters on labeled vehicles
+/// (six recordings) 5 hold the middle of two, and of 567 cars and vans (KITTI's tracking labels) 31
+/// are higher than 2 m: so the share of two of which one is that high is 5/411 * 2 * 31/567.
+constexpr double kHigh = 2, kShareOfTwoHigh = 0.0013;
 /// Evidence of a likely vehicle: with one in ten clusters, as likely as not.
 constexpr double kLikelyVehicle = 2;
 /// A side measures length or width if it is this close to parallel or perpendicular to the axis.
@@ -132,6 +136,32 @@ void seeSides(const Measurement& m, double axis, const FilterModel& model, Track
   (across ? turned : seen).into(track.fitting_length, track.fitting_width);
 }
 
+/// Classes of vehicles for which what was seen is too long, where it is too high for two of them in
+/// one cluster, with that share in full; vehicles together stay as likely as they are.
+void addHighAndLong(const FilterModel& model, double longest_before, double height_before,
+                    Track& track) {
+  const double rest =
+      std::log(kShareOfTwoHigh) - model.params.side_exponent * std::log(kShareOfTwo);
+  const auto charge = [&](const ObjectClass& c, double longest, double height) {
+    return height > kHigh && longest > c.length + kMostSigmas * c.length_sigma ? rest : 0.0;
+  };
+  double before = kMinusInfinity, after = kMinusInfinity;
+  std::vector<double> log_class = track.log_class;
+  for (ClassId j = 0; j < model.classes.size(); ++j) {
+    const ObjectClass& c = model.classes[j];
+    if (c.shape != ObjectShape::kVehicle) continue;
+    double& lp = log_class[static_cast<std::size_t>(j)];
+    before = logAddExp(before, lp);
+    lp += charge(c, track.longest, track.height.mean) - charge(c, longest_before, height_before);
+    after = logAddExp(after, lp);
+  }
+  if (!std::isfinite(before) || !std::isfinite(after)) return;
+  for (ClassId j = 0; j < model.classes.size(); ++j)
+    if (model.classes[j].shape == ObjectShape::kVehicle)
+      track.log_class[static_cast<std::size_t>(j)] =
+          log_class[static_cast<std::size_t>(j)] + before - after;
+}
+
 ScalarEstimate mixtureOf(const ClassTable& classes, double ObjectClass::*mean,
                          double ObjectClass::*sigma) {
   double sum = 0, square = 0;
@@ -159,6 +189,7 @@ void startSizes(const FilterModel& model, Track& track) {
 void updateSizes(const Measurement& m, std::optional<double> axis, const FilterModel& model,
                  Track& track) {
   const auto& p = model.params;
+  const double longest = track.longest, height = track.height.mean;
   const auto count = [&](double exponent, double any, const auto& whole, const auto& fitting,
                          const auto& see) {
     if (exponent <= 0) {
@@ -188,6 +219,7 @@ void updateSizes(const Measurement& m, std::optional<double> axis, const FilterM
         [&](const ObjectClass& c) { return logFittingSides(c, track); },
         [&] { seeSides(m, *axis, model, track); });
   }
+  if (m.view && p.side_exponent > 0) addHighAndLong(model, longest, height, track);
 }
 
 }  // namespace perception

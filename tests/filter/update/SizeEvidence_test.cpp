@@ -185,6 +185,29 @@ TEST(SizeEvidence, WhatIsLongerThanAnyCarIsMoreLikelyABus) {
   EXPECT_NEAR(seen(9.8, 1), 0, 1e-9) << "perhaps a hedge";
 }
 
+TEST(SizeEvidence, WhatIsLongerThanAnyCarAndHigherThanMostIsABus) {
+  FilterModel model = shippedModel();
+  model.params.side_exponent = 0.5;
+  const auto seen = [&](double length, double height) {
+    Measurement m = cluster(height);
+    m.sides = box(length, 1.6).sides;
+    m.sides->length_complete = m.sides->width_complete = false;
+    m.height->variance = 1.5 * 1.5;  // its top is outside the view
+    for (const ObjectClass& c : model.classes.classes)
+      m.log_class.push_back(c.shape == ObjectShape::kVehicle ? 3 : -5);
+    Track track = newborn(model);
+    for (int i = 0; i < 9; ++i) updateSizes(m, 0.0, model, track);
+    std::vector<double> vehicles = {
+        track.log_class[static_cast<std::size_t>(model.classes.find("bus"))],
+        track.log_class[static_cast<std::size_t>(model.classes.find("car"))]};
+    return std::make_pair(vehicles[0] - vehicles[1], logSumExp(vehicles));
+  };
+  const auto high = seen(9.8, 2.3), low = seen(9.8, 1.9), shorter = seen(6.6, 2.3);
+  EXPECT_GT(high.first, low.first + 4.5) << "hardly two cars";
+  EXPECT_LT(shorter.first, high.first - 6) << "a van";
+  EXPECT_NEAR(high.second, low.second, 0.8) << "as likely a vehicle";
+}
+
 TEST(SizeEvidence, NoSizeIsAProof) {
   const FilterModel model = shippedModel();
   Track track = newborn(model);

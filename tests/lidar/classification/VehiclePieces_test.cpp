@@ -29,9 +29,9 @@ bool judgeByLength(DescribedCluster& c) {
   return true;
 }
 
-/// Clusters of sides 12 m away that stand for themselves.
+/// Clusters of sides 12 m away, `top` [m] high, that stand for themselves.
 struct Row {
-  explicit Row(const Sides& sides) : scan(sceneOf(sides)) {
+  explicit Row(const Sides& sides, double top = 1.4) : scan(sceneOf(sides, top)) {
     for (const auto& [from, to] : sides) {
       DescribedCluster c;
       c.segment.points = scan.within(11, 13, from - 0.05, to + 0.05);
@@ -41,10 +41,10 @@ struct Row {
     }
     stands.assign(sides.size(), 1);
   }
-  static SolidScene sceneOf(const Sides& sides) {
+  static SolidScene sceneOf(const Sides& sides, double top = 1.4) {
     SolidScene scene;
     for (const auto& [from, to] : sides)
-      scene.boxes.push_back({{12, (from + to) / 2}, kPi / 2, to - from, 0.3, 0.25, 1.4});
+      scene.boxes.push_back({{12, (from + to) / 2}, kPi / 2, to - from, 0.3, 0.25, top});
     return scene;
   }
   /// Of the clusters that stand for themselves with their pieces.
@@ -105,6 +105,30 @@ TEST(VehiclePieces, WhatDoesNotMakeItLikelierIsNone) {
   chanceOf(row.clusters[0], ClusterKind::kVehicle) = 0.85;
   EXPECT_EQ(row.joined(), 2) << ".8 together";
 }
+
+/// A truck of 10 m in two pieces: one may be a vehicle, the other looks like a thing.
+Row truck(double top = 2.6, double gap = 0.3, double second = 0.1) {
+  Row row({{-5, 0}, {gap, 5}}, top);
+  for (const std::size_t i : {0, 1}) row.clusters[i].probabilities = {};
+  chanceOf(row.clusters[0], ClusterKind::kVehicle) = 0.75;
+  chanceOf(row.clusters[1], ClusterKind::kVehicle) = second;
+  chanceOf(row.clusters[1], ClusterKind::kThing) = 1 - second;
+  return row;
+}
+
+TEST(VehiclePieces, WhatContinuesTheSideOfAHighOneIsAPieceOfATruck) {
+  Row row = truck();
+  EXPECT_EQ(row.joined(), 1);
+  EXPECT_NEAR(row.clusters[0].descriptor[static_cast<std::size_t>(Feature::kLength)], 10, 0.2);
+}
+
+TEST(VehiclePieces, CarsInARowAreNoTruck) { EXPECT_EQ(truck(1.6).joined(), 2) << "1.6 m high"; }
+
+TEST(VehiclePieces, WhatBeginsBehindAGapIsNoPieceOfATruck) {
+  EXPECT_EQ(truck(2.6, 0.7).joined(), 2);
+}
+
+TEST(VehiclePieces, TwoHighVehiclesStayTwo) { EXPECT_EQ(truck(2.6, 0.3, 0.8).joined(), 2); }
 
 TEST(VehiclePieces, ACarBehindAPostIsOneCluster) {
   SolidScene scene = Row::sceneOf({{-2, 2}});
