@@ -81,7 +81,7 @@ constexpr double kPlume =
     0.5;  // probability of a phantom from which a cluster is no piece (assumed)
 /// [m] by which the sides of the pieces are off one line, and [-] of the distance along it: the
 /// least deviation of a box's direction; [m] that the widest vehicles reach behind their side.
-constexpr float kOffLine = 0.3f, kOffDirection = 0.05f, kWidest = 3.2f;
+constexpr float kOffSide = 0.3f, kOffDirection = 0.05f, kWidest = 3.2f;
 
 /// The side of a long vehicle that faces the sensor, found from one piece.
 class LongSide {
@@ -111,7 +111,7 @@ class LongSide {
     const Bounds b = boundsOf(found, piece);
     const float away = std::max({b.along.low - along_it_.high, along_it_.low - b.along.high, 0.0f});
     const float from_middle = std::abs((b.along.low + b.along.high) / 2 - middle_);
-    if (away > kMostApart || std::abs(b.near - near_) > kOffLine + kOffDirection * from_middle ||
+    if (away > kMostApart || std::abs(b.near - near_) > kOffSide + kOffDirection * from_middle ||
         b.far > near_ + kWidest)
       return false;
     along_it_.add(b.along.low), along_it_.add(b.along.high);

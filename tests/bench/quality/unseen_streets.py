@@ -3,11 +3,8 @@
 
     unseen_streets.py ROW FILE...           reports of perception-evaluate, or what the row's function says
     unseen_streets.py absent ROW WHAT | head
-    unseen_streets.py drive_ini KITTI.INI OUT
-    unseen_streets.py drive_truth LABELS CALIBRATION SCENES.CSV OUT
 """
 import csv
-import gzip
 import json
 import math
 import os
@@ -16,14 +13,10 @@ import sys
 
 import numpy as np
 
-CERTAIN = 0.95
-ROAD_USERS = ("pedestrian", "cyclist", "car", "bus")
+from unseen_runs import by_frame, is_user, rows_of
+from unseen_snow import wads
+
 NEAR = 2.0  # [m] from the center of a true object to its output, as in perception-evaluate
-
-
-def rows_of(path):
-    with open(path, newline="") as file:
-        return list(csv.DictReader(file))
 
 
 class Figures:
@@ -100,17 +93,6 @@ def aimotive(paths):
     velocity = math.sqrt(np.mean(np.square(errors)))
     text += f"; L+R: longest second track {longest:.1f} s, velocity {velocity:.2f} m/s rms from 1 s on"
     return text, "L+R: no second track longer than .3 s, velocity .3 m/s", longest <= 0.3 and velocity <= 0.3
-
-
-def by_frame(rows):
-    found = {}
-    for row in rows:
-        found.setdefault(row["frame"], []).append(row)
-    return found
-
-
-def is_user(row):
-    return row["class"] in ROAD_USERS and row["classified"] == "1"
 
 
 def inside(output, box, margin=0.3):
@@ -209,56 +191,6 @@ def left_out(folders):
     return "; ".join(text), "vehicles .85, pedestrians .75, riders .6; sure and wrong 2 %", met
 
 
-def wads(args):
-    """A certain road user stands on one if five returns labeled as car, other vehicle or person lie within 1 m or half its length."""
-    from scipy.spatial import cKDTree
-    folder, runs = args[0], args[1:]
-    poses = [np.array(line.split(), float).reshape(3, 4) for line in open(os.path.join(folder, "poses.txt"))]
-    names = sorted(n.split(".")[0] for n in os.listdir(os.path.join(folder, "velodyne")))
-    returns = {}
-    for name, pose in zip(names, poses):
-        points = np.frombuffer(gzip.open(f"{folder}/velodyne/{name}.bin.gz").read(), "<f4").reshape(-1, 4)[:, :3]
-        labels = np.frombuffer(gzip.open(f"{folder}/labels/{name}.label.gz").read(), "<u4") & 0xFFFF
-        returns[int(name)] = (points, labels, pose)
-    found = {}
-    for run in runs:
-        outputs = by_frame(rows_of(os.path.join(run, "tracks.csv")))
-        on, of, people, groups_ = 0, 0, 0, 0
-        for scene in rows_of(os.path.join(run, "scenes.csv")):
-            points, labels, _ = returns[int(scene["frame"])]
-            c, s = math.cos(float(scene["yaw"])), math.sin(float(scene["yaw"]))
-            turned = points[:, :2] @ np.array([[c, s], [-s, c]]) + np.array([float(scene["x"]), float(scene["y"])])
-            users = cKDTree(turned[np.isin(labels, (10, 20, 30))])
-            here = outputs.get(scene["frame"], [])
-            for o in here:
-                place = (float(o["x"]), float(o["y"]))
-                if not is_user(o) or math.dist(place, (float(scene["x"]), float(scene["y"]))) > 40:
-                    continue
-                of += 1
-                on += len(users.query_ball_point(place, max(1.0, float(o["length"]) / 2))) >= 5
-            walkers = [(float(o["x"]), float(o["y"])) for o in here if o["class"] == "pedestrian" and o["classified"] == "1"]
-            for group in linked(turned[labels == 30], 0.8):
-                if len(group) < 20 or np.hypot(*(group.mean(0) - [float(scene["x"]), float(scene["y"])])) > 40:
-                    continue
-                groups_ += 1
-                people += bool(walkers) and min(np.hypot(*(group - w).T).min() for w in walkers) <= 1.0
-        found.setdefault(os.path.basename(run).rpartition("-")[0], []).append((on, of, people, groups_))
-    text = "; ".join(f"{tag.split('-')[1].replace('.', ' ')}: {', '.join(f'{a} of {b}' for a, b, _, _ in v)} certain road users stand on one, "
-                     f"{', '.join(f'{c} of {d}' for _, _, c, d in v)} groups of persons certain" for tag, v in found.items())
-    met = all(a >= 0.95 * b and c > 0 for a, b, c, _ in found["wads-L"])
-    return text, "shipped: .95 on a road user, people found", met
-
-
-def linked(points, distance):
-    """Groups of points linked by at most distance."""
-    from scipy.sparse import coo_matrix
-    from scipy.sparse.csgraph import connected_components
-    from scipy.spatial import cKDTree
-    pairs = cKDTree(points).query_pairs(distance, output_type="ndarray") if len(points) else np.zeros((0, 2), int)
-    count, of = connected_components(coo_matrix((np.ones(len(pairs)), pairs.T), (len(points), len(points))), False)
-    return [points[of == k] for k in range(count)]
-
-
 def headings(paths):
     stated, right, moving = [], [], []
     for path in paths:
@@ -288,76 +220,6 @@ def ece(stated, right, bins=10):
     return sum(abs(stated[cell == k].sum() - right[cell == k].sum()) for k in range(bins)) / max(1, len(stated))
 
 
-def drive_ini(kitti, out):
-    """ini/kitti.ini with the boxes of YOLOX, which calls people on bicycles persons, and whose scores are log odds already."""
-    with open(out, "w") as file:
-        file.write(f"""include = {kitti}
-[sensor.yolox]
-kind = boxes
-modality = C
-clutter_per_scan = 0.5
-births_per_scan = 0.05
-range_max = 70
-fov_deg = 80
-[sensor.yolox.detector]
-score_slope = 1
-score_offset = 0
-score_by_class = true
-memory_lasting = 0.3
-memory_kept = 0.5
-memory_time = 1
-names = Car=car, Pedestrian=person, Cyclist=person
-""")
-
-
-def drive_truth(labels, calibration, scenes, out):
-    """The labels of single frames in the world of a run, and those of the scans between: what stands keeps its place, what moves is
-    interpolated. KITTI's boxes keep their size in a drive, so equal sizes are one object. The frame of scenes.csv is the vehicle's."""
-    matrices = {}
-    for line in open(calibration):
-        name, *numbers = line.replace(":", " ").split()
-        matrices[name] = np.array(numbers, float)
-    to_camera = np.eye(4)
-    to_camera[:3] = next(v for k, v in matrices.items() if k.startswith("Tr_velo")).reshape(3, 4)
-    rectify = np.eye(4)
-    rectify[:3, :3] = next(v for k, v in matrices.items() if k.startswith("R_rect") or k.startswith("R0")).reshape(3, 3)
-    to_lidar = np.linalg.inv(rectify @ to_camera)
-    ego = {int(r["frame"]): [float(r[k]) for k in ("t", "x", "y", "yaw")] for r in rows_of(scenes)}
-    frames = sorted(ego)
-
-    def pose(frame):  # between scans: interpolated
-        return [np.interp(frame, frames, [ego[f][k] for f in frames]) for k in range(4)]
-
-    seen = {}  # size -> {frame: (x, y, z, yaw)}
-    for name in sorted(os.listdir(labels)):
-        frame = int(name.split(".")[0])
-        _, ex, ey, eyaw = pose(frame)
-        for line in open(os.path.join(labels, name)):
-            cells = line.split()
-            if cells[0] in ("DontCare", "Misc"):
-                continue
-            h, w, l, x, y, z, ry = map(float, cells[8:15])
-            p = to_lidar @ [x, y, z, 1]
-            yaw = -ry - math.pi / 2 + eyaw
-            place = (ex + math.cos(eyaw) * p[0] - math.sin(eyaw) * p[1], ey + math.sin(eyaw) * p[0] + math.cos(eyaw) * p[1], p[2] + 1.73, yaw)
-            seen.setdefault((cells[0], h, w, l), {})[frame] = place
-    lines = []
-    for number, ((kind, h, w, l), at) in enumerate(sorted(seen.items()), 1):
-        known = sorted(at)
-        for frame in [f for f in frames if known[0] <= f <= known[-1]]:
-            x, y, z = (np.interp(frame, known, [at[f][k] for f in known]) for k in range(3))
-            yaw = at[min(known, key=lambda f: abs(f - frame))][3]
-            span = ego[frames[-1]][0] - ego[frames[0]][0]
-            rate = (frames[-1] - frames[0]) / span
-            time = (known[-1] - known[0]) / rate
-            vx, vy = ((at[known[-1]][k] - at[known[0]][k]) / time if time else 0.0 for k in (0, 1))
-            lines.append((frame, f"{frame},{ego[frame][0]:.9f},{number},{kind},{x:.4f},{y:.4f},{z:.4f},{math.remainder(yaw, 2 * math.pi):.6f},"
-                                 f"{l},{w},{h},{vx:.4f},{vy:.4f},0,0,100,0"))
-    with open(out, "w") as file:
-        file.write("frame,t,id,class,x,y,z,yaw,length,width,height,vx,vy,truncated,occluded,lidar_points,ignore\n")
-        file.writelines(text + "\n" for _, text in sorted(lines))
-
-
 ROWS = {f.__name__: f for f in (left_out, kitti_0000, kitti_0000_camera, aimotive, drive_0052, drive_0052_camera, wads, argoverse, headings)}
 ROWS.update(kitti_object=argoverse, delft=argoverse)
 
@@ -373,9 +235,6 @@ def main(args):
     if args[0] == "absent":
         line(args[1], "not there: " + args[2], "", "not measured")
         return 1
-    if args[0] in ("drive_ini", "drive_truth"):
-        globals()[args[0]](*args[1:])
-        return 0
     figure, wanted, met = ROWS[args[0]](args[1:])
     line(args[0], figure, wanted, "shown" if met is None else "met" if met else "MISSED")
     return 1 if met is False else 0

@@ -6,7 +6,7 @@
 #     ROW  left_out kitti_0000 kitti_0000_camera aimotive drive_0052 drive_0052_camera wads argoverse kitti_object delft
 #          headings; without one, all
 #     -s   seeds of the tracker [1 2 3]   -t  seed of the training [1]: figures move with it, so look at several
-# About forty minutes on two cores. Logs, models and runs stay in OUT [out/unseen_streets]: what is there is not made again.
+# An hour and a half on two cores, most of it training. Logs, models and runs stay in OUT [out/unseen_streets]: what is there is not made again.
 # Delete OUT/runs after a change of the tracker, OUT/models after one of the segmentation or the descriptors.
 # PERCEPTION_BIN: programs [build/bin]. PERCEPTION_SHARED: folder with data/ and models/ [../shared].
 set -euo pipefail
@@ -161,18 +161,18 @@ aimotive() {
   $tool aimotive "${found[@]}"
 }
 
-# Four frames of the drive are labeled. The truth of the scans from the first to the last of them: unseen_streets.py drive.
+# Four frames of the drive are labeled. The truth of the scans from the first to the last of them: unseen_drive.py.
 drive() {
   local sensors=$1 tag=$2 model run l=$out/logs names='Car=car, Truck=car, Bus=car, Pedestrian=person, Cyclist=person'
   made "$l/drive_0052_images.rawlog" "$bin/perception-import" kitti --calib "$data/kitti_tracking/calib/0000.txt" \
     --lidar "$data/kitti_cam_lidar_drive0052/velodyne_front120" --images "$data/kitti_cam_lidar_drive0052/image_02"
   [[ -f $l/drive_0052.rawlog ]] || PERCEPTION_MODELS=$shared/models quietly "$bin/perception-detect" -c ini/detectors/yolox.ini \
     -i "$l/drive_0052_images.rawlog" --label yolox -o "$l/drive_0052.rawlog"
-  [[ -f $out/drive_0052.ini ]] || $tool drive_ini "$(readlink -f ini/kitti.ini)" "$out/drive_0052.ini"
+  [[ -f $out/drive_0052.ini ]] || tests/bench/quality/unseen_drive.py ini "$(readlink -f ini/kitti.ini)" "$out/drive_0052.ini"
   blind drive_0052
   track "$l/drive_0052.rawlog" "$out/drive_0052.ini" "$sensors" "$model" "$tag.blind" ego.source=lidar
   run=$out/runs/$tag.blind-${seeds%% *}
-  [[ -f $l/drive_0052.truth.csv ]] || $tool drive_truth "$data/kitti_cam_lidar_drive0052/label_2" \
+  [[ -f $l/drive_0052.truth.csv ]] || tests/bench/quality/unseen_drive.py truth "$data/kitti_cam_lidar_drive0052/label_2" \
     "$data/kitti_tracking/calib/0000.txt" "$run/scenes.csv" "$l/drive_0052.truth.csv"
   evaluate "$tag.blind" "$l/drive_0052.truth.csv" 40 --fov-deg 80 --complete-fov-deg 80 --min-points 0 --any-truth
 }
