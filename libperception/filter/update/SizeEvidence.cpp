@@ -26,9 +26,10 @@ constexpr double kTallest = 4, kWidest = 4;  // [m] of those, which have any siz
 /// than their vehicle (assumed).
 constexpr double kShareAcross = 0.1, kShareOfTwo = 0.05;
 constexpr double kMostSigmas = 4;  // by which vehicles are longer than the mean of their class
-/// What is longer than a car is two in one cluster, or a truck. Of 411 clusters on labeled vehicles
-/// (six recordings) 5 hold the middle of two, and of 567 cars and vans (KITTI's tracking labels) 31
-/// are higher than 2 m: so the share of two of which one is that high is 5/411 * 2 * 31/567.
+/// What is longer than two cars is two in one cluster, or a truck. Of 411 clusters on labeled
+/// vehicles (six recordings) 5 hold the middle of two, and of 567 cars and vans (KITTI's tracking
+/// labels) 31 are higher than 2 m: so the share of two of which one is that high is 5/411 * 2 *
+/// 31/567.
 constexpr double kHigh = 2, kShareOfTwoHigh = 0.0013;
 /// Evidence of a likely vehicle: with one in ten clusters, as likely as not.
 constexpr double kLikelyVehicle = 2;
@@ -143,7 +144,7 @@ void addHighAndLong(const FilterModel& model, double longest_before, double heig
   const double rest =
       std::log(kShareOfTwoHigh) - model.params.side_exponent * std::log(kShareOfTwo);
   const auto charge = [&](const ObjectClass& c, double longest, double height) {
-    return height > kHigh && longest > c.length + kMostSigmas * c.length_sigma ? rest : 0.0;
+    return height > kHigh && longest > 2 * c.length ? rest : 0.0;
   };
   double before = kMinusInfinity, after = kMinusInfinity;
   std::vector<double> log_class = track.log_class;

@@ -69,9 +69,9 @@ std::optional<DescribedCluster> join(const ClusterDescriber& describer, const Cl
   return likelier && joined >= kLeastJoined ? std::optional(std::move(both)) : std::nullopt;
 }
 
-/// Trucks and buses are longer than that [m], and higher where the view reaches so far, as in
-/// JudgedClusters.cpp; [m] least length of a piece whose direction is theirs (assumed).
-constexpr float kTruckLong = 7, kTruckHigh = 2, kLongPiece = 3;
+/// [m] Trucks are longer than any van (7.4 m) with what touches it, and high where the view reaches
+/// so far; least length of a piece whose direction is theirs (assumed).
+constexpr float kTruckLong = 8, kTruckHigh = 2, kLongPiece = 3;
 /// [m] by which all together are longer than the one piece at least (assumed).
 constexpr float kLonger = 1;
 /// Least probability that a piece, and all pieces together, are a vehicle; of two pieces that are

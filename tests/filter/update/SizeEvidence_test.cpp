@@ -202,9 +202,11 @@ TEST(SizeEvidence, WhatIsLongerThanAnyCarAndHigherThanMostIsABus) {
         track.log_class[static_cast<std::size_t>(model.classes.find("car"))]};
     return std::make_pair(vehicles[0] - vehicles[1], logSumExp(vehicles));
   };
-  const auto high = seen(9.8, 2.3), low = seen(9.8, 1.9), shorter = seen(6.6, 2.3);
+  const auto high = seen(9.8, 2.3), low = seen(9.8, 1.9), shorter = seen(6.6, 2.3),
+             touching = seen(7.6, 2.3), touching_low = seen(7.6, 1.9);
   EXPECT_GT(high.first, low.first + 4.5) << "hardly two cars";
   EXPECT_LT(shorter.first, high.first - 6) << "a van";
+  EXPECT_LT(touching.first, touching_low.first + 2) << "a van that touches something";
   EXPECT_NEAR(high.second, low.second, 0.8) << "as likely a vehicle";
 }
 

@@ -122,6 +122,14 @@ TEST(VehiclePieces, WhatContinuesTheSideOfAHighOneIsAPieceOfATruck) {
   EXPECT_NEAR(row.clusters[0].descriptor[static_cast<std::size_t>(Feature::kLength)], 10, 0.2);
 }
 
+TEST(VehiclePieces, AHighVanTakesNothingBesideIt) {
+  Row row({{-4.5, 0}, {0.3, 2.9}}, 2.2);
+  for (const std::size_t i : {0, 1}) row.clusters[i].probabilities = {};
+  chanceOf(row.clusters[0], ClusterKind::kVehicle) = 0.75;
+  chanceOf(row.clusters[1], ClusterKind::kThing) = 1;
+  EXPECT_EQ(row.joined(), 2) << "7.4 m together";
+}
+
 TEST(VehiclePieces, CarsInARowAreNoTruck) { EXPECT_EQ(truck(1.6).joined(), 2) << "1.6 m high"; }
 
 TEST(VehiclePieces, WhatBeginsBehindAGapIsNoPieceOfATruck) {
