@@ -10,7 +10,7 @@ namespace {
 
 // All assumed.
 constexpr double kSure = 0.999;  // P(phantom), at most
-constexpr double kLate = 0.35;   // [s]
+constexpr double kLate = 0.35;   // [s] for which a wake counts as just known
 constexpr double kLeastDetection = 0.1;
 constexpr double kDrift = 3, kDriftSpread = 1;  // [m/s] of spray, by the wind
 
