@@ -14,7 +14,7 @@ using File = const std::string&;
 const std::vector<DeviceKind>& deviceKinds() {
   constexpr auto kUdp = Transport::kUdp;
   static const std::vector<DeviceKind> kinds = {
-      {"velodyne", "Velodyne VLP-16, VLP-32C", true, kUdp, 2368, false, 200,
+      {"velodyne", "Velodyne HDL-32E, VLP-16, VLP-32C", true, kUdp, 2368, false, 200,
        [](File) { return makeVelodyneDecoder(); }, &makeVelodyneEncoder},
       {"pandar40p", "Hesai Pandar40P; file: beams of the unit", true, kUdp, 2368, false, 200,
        &makePandar40pDecoder, &makePandar40pEncoder},

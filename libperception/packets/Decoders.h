@@ -6,10 +6,10 @@
 
 namespace perception {
 
-/// Velodyne VLP-16 and VLP-32C (1206 bytes; the model is in the packet; azimuths interpolated by
-/// the time of each firing, without vertical offsets of the lasers). Of equal dual returns the
-/// first alone. Stamp: past the hour. No packet numbers are sent: they follow from the stamps, as
-/// firings never pause. Source: the manuals of the sensors.
+/// Velodyne HDL-32E, VLP-16 and VLP-32C (1206 bytes; the model is in the packet; azimuths
+/// interpolated by the time of each firing, without vertical offsets of the lasers). Of equal dual
+/// returns the first alone. Stamp: past the hour. No packet numbers are sent: they follow from the
+/// stamps, as firings never pause. Source: the manuals of the sensors.
 std::unique_ptr<PacketDecoder> makeVelodyneDecoder();
 
 /// Hesai Pandar40P and XT32. `file`: beams of the unit, "Laser id,Elevation,Azimuth"; empty: the

@@ -52,6 +52,16 @@ const std::vector<BeamAngles>& vlp16Beams() {
   return beams;
 }
 
+const std::vector<BeamAngles>& hdl32eBeams() {
+  static const std::vector<BeamAngles> beams = [] {
+    std::vector<BeamAngles> list;
+    for (int laser = 0; laser < 32; ++laser)
+      list.push_back({(laser % 2 == 0 ? -30.67 : -9.33) + laser / 2 * 4 / 3.0, 0});
+    return list;
+  }();
+  return beams;
+}
+
 const std::vector<BeamAngles>& vlp32cBeams() {
   static const std::vector<BeamAngles> beams = {
       {-25, 1.4},    {-1, -4.2},     {-1.667, 1.4}, {-15.639, -1.4}, {-11.31, 1.4}, {0, -1.4},

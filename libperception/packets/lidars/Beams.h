@@ -23,6 +23,7 @@ std::vector<BeamAngles> readBeams(const std::string& path, std::size_t count);
 /// Beams of the models, in the order of their channels: those of the manuals, of Hesai's the
 /// nominal ones.
 const std::vector<BeamAngles>& vlp16Beams();
+const std::vector<BeamAngles>& hdl32eBeams();
 const std::vector<BeamAngles>& vlp32cBeams();
 const std::vector<BeamAngles>& pandar40pBeams();
 const std::vector<BeamAngles>& xt32Beams();

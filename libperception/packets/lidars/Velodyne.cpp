@@ -12,30 +12,45 @@ namespace {
 
 constexpr std::size_t kSize = 1206, kBlock = 100, kTail = 1200, kBlocks = 12, kChannels = 32;
 constexpr int kTurn = 36000;
-constexpr double kFiring = 55.296, kLaser = 2.304;  ///< [us]
 
+/// Times of the manuals of each model.
 struct Model {
-  double unit;  ///< [m]
+  double unit;           ///< [m]
+  double firing, laser;  ///< [us] of all lasers, and from one that fires to the next
+  std::size_t together;  ///< lasers that fire at once
   std::vector<BeamAngles> beams;
   std::vector<std::uint16_t> rings;
+
+  std::size_t firingsInBlock() const { return kChannels / beams.size(); }
+  /// Of the return of a channel in its block [us].
+  double timeInBlock(std::size_t channel) const {
+    return firing * static_cast<double>(channel / beams.size()) +
+           laser * static_cast<double>(channel % beams.size() / together);
+  }
 };
 
 const Model& vlp16() {
-  static const Model model{0.002, vlp16Beams(), ringsOf(vlp16Beams())};
+  static const Model model{0.002, 55.296, 2.304, 1, vlp16Beams(), ringsOf(vlp16Beams())};
   return model;
 }
 
 const Model& vlp32c() {
-  static const Model model{0.004, vlp32cBeams(), ringsOf(vlp32cBeams())};
+  static const Model model{0.004, 55.296, 2.304, 2, vlp32cBeams(), ringsOf(vlp32cBeams())};
+  return model;
+}
+
+const Model& hdl32e() {
+  static const Model model{0.002, 46.08, 1.152, 1, hdl32eBeams(), ringsOf(hdl32eBeams())};
   return model;
 }
 
 const Model& modelIn(std::string_view payload) {
   const auto id = littleEndian(payload, kTail + 5, 1);
+  if (id == 0x21) return hdl32e();
   if (id == 0x22) return vlp16();
   if (id == 0x28) return vlp32c();
   throw DataError("Velodyne packet: byte 1205: model " + std::to_string(id) +
-                  ", expected 34 (VLP-16) or 40 (VLP-32C)");
+                  ", expected 33 (HDL-32E), 34 (VLP-16) or 40 (VLP-32C)");
 }
 
 /// Azimuth of each block [0.01 deg].
@@ -55,12 +70,6 @@ std::array<int, kBlocks> azimuthsOf(std::string_view payload) {
   return azimuths;
 }
 
-/// The manual's: lasers of a VLP-32C fire in pairs.
-double timeInBlock(std::size_t j, bool two_firings) {
-  return two_firings ? kFiring * static_cast<double>(j / 16) + kLaser * static_cast<double>(j % 16)
-                     : kLaser * static_cast<double>(j / 2);
-}
-
 class VelodyneDecoder final : public PacketDecoder {
  public:
   DecodedPacket decode(std::string_view payload) override {
@@ -75,9 +84,8 @@ class VelodyneDecoder final : public PacketDecoder {
     const auto micros = static_cast<std::int64_t>(littleEndian(payload, kTail, 4));
     packet.stamp_ns = micros * 1000;
     packet.clock_period_ns = kHour * 1000;
-    const double firings = kBlocks * (model.beams.size() < kChannels ? 2.0 : 1.0);
-    packet.number =
-        numberAt(micros, kFiring * firings / static_cast<double>(echoes), azimuths[0], packet);
+    const double firings = static_cast<double>(kBlocks * model.firingsInBlock() / echoes);
+    packet.number = numberAt(micros, model.firing * firings, azimuths[0], packet);
     packet.numbers = std::uint64_t{1} << 32;
     packet.turn = static_cast<float>(azimuths[0]) / kTurn;
     for (std::size_t b = 0; b < kBlocks; ++b) {
@@ -137,8 +145,7 @@ class VelodyneDecoder final : public PacketDecoder {
   static void addBlock(std::string_view payload, const Model& model, std::size_t b,
                        std::size_t echoes, int azimuth, int step, DecodedPacket& packet) {
     const std::size_t lasers = model.beams.size(), echo = b % echoes;
-    const bool two = lasers < kChannels;
-    const double period = two ? 2 * kFiring : kFiring;
+    const double period = model.firing * static_cast<double>(model.firingsInBlock());
     for (std::size_t j = 0; j < kChannels; ++j) {
       const std::size_t at = b * kBlock + 4 + 3 * j;
       const auto raw = littleEndian(payload, at, 2);
@@ -146,7 +153,7 @@ class VelodyneDecoder final : public PacketDecoder {
         continue;
       }
       const BeamAngles& beam = model.beams[j % lasers];
-      const double after = timeInBlock(j, two);
+      const double after = model.timeInBlock(j);
       const double angle = (azimuth + step * after / period) / 100;
       LidarReturn point =
           returnAt(static_cast<double>(raw) * model.unit, angle + beam.azimuth, beam.elevation);
