@@ -110,6 +110,8 @@ TrackHandle takeOver(const Track& older, const Track& younger, bool fragment) {
     t.log_class = older.log_class;
     t.evidence = older.evidence;
     t.length = older.length, t.width = older.width, t.height = older.height;
+    t.fitting_length = older.fitting_length, t.fitting_width = older.fitting_width;
+    t.longest = older.longest;
   }
   t.phantom = std::min(older.phantom, younger.phantom);
   t.previous = older.previous;

@@ -191,6 +191,9 @@ TEST(Duplicates, ACyclistAsLongAsACarIsReplacedByTheCarInItsPlace) {
 TEST(Duplicates, AClassGoesWithWhatHasBeenCountedInIt) {
   Track older = carWith(1, 0.999, 20, 0.5), younger = carWith(2, 0.999, 3, 0);
   older.length = {4.5, 0.1}, younger.length = {2, 1};
+  older.fitting_length = {4.4, 0.1}, younger.fitting_length = {2, 1};
+  older.fitting_width = {1.7, 0.1}, younger.fitting_width = {2.4, 1};
+  older.longest = 4.6, younger.longest = 2;
   older.evidence.push_back({7, kNow, {}, 3, 20, {}});
   TrackTable tracks = {std::make_shared<const Track>(older),
                        std::make_shared<const Track>(younger)};
@@ -201,6 +204,9 @@ TEST(Duplicates, AClassGoesWithWhatHasBeenCountedInIt) {
   const Track& kept = *tracks[cells.front()];
   EXPECT_EQ(kept.last_hit[0], kNow) << "the state of the younger one";
   EXPECT_EQ(kept.length.mean, 4.5);
+  EXPECT_EQ(kept.fitting_length.mean, 4.4);
+  EXPECT_EQ(kept.fitting_width.mean, 1.7);
+  EXPECT_EQ(kept.longest, 4.6);
   ASSERT_EQ(kept.evidence.size(), 1U);
   EXPECT_EQ(kept.evidence[0].views, 3);
 }
