@@ -141,6 +141,12 @@ class LongSide {
   Interval along_it_;
 };
 
+/// Gives all of a vehicle the probabilities of its piece, if they make it likelier.
+void takeLikelier(const DescribedCluster& piece, DescribedCluster& all) {
+  if (chance(piece, ClusterKind::kVehicle) > chance(all, ClusterKind::kVehicle))
+    all.probabilities = piece.probabilities;
+}
+
 /// Joins to what is high and may be a vehicle all that continues its side, if together they are
 /// longer than a car and may be a truck or bus.
 void joinLong(const LidarDetections& found, const ClusterDescriber& describer,
@@ -182,6 +188,10 @@ void joinLong(const LidarDetections& found, const ClusterDescriber& describer,
     return;
   judge(all);
   if (chance(all, ClusterKind::kVehicle) < kLeastLong) return;
+  // Models have seen few trucks, and pieces of them alone: the whole is as likely one as its
+  // likeliest piece.
+  for (const std::size_t i : pieces) takeLikelier(clusters[i], all);
+  takeLikelier(clusters[v], all);
   clusters[v] = std::move(all);
   for (const std::size_t i : pieces) stands[i] = 0;
 }

@@ -48,9 +48,9 @@ struct Row {
     return scene;
   }
   /// Of the clusters that stand for themselves with their pieces.
-  int joined() {
-    joinPieces(scan.found, ClusterDescriber(scan.found, scan.cloud(), cells), judgeByLength,
-               clusters, stands);
+  int joined(const ClusterVisitor& judge = judgeByLength) {
+    joinPieces(scan.found, ClusterDescriber(scan.found, scan.cloud(), cells), judge, clusters,
+               stands);
     return std::accumulate(stands.begin(), stands.end(), 0);
   }
 
@@ -120,6 +120,22 @@ TEST(VehiclePieces, WhatContinuesTheSideOfAHighOneIsAPieceOfATruck) {
   Row row = truck();
   EXPECT_EQ(row.joined(), 1);
   EXPECT_NEAR(row.clusters[0].descriptor[static_cast<std::size_t>(Feature::kLength)], 10, 0.2);
+}
+
+TEST(VehiclePieces, ATruckIsAsLikelyOneAsItsLikeliestPiece) {
+  const auto whole = [](double vehicle) {
+    Row row = truck();
+    EXPECT_EQ(row.joined([&](DescribedCluster& c) {
+      c.probabilities = {};
+      chanceOf(c, ClusterKind::kVehicle) = vehicle, chanceOf(c, ClusterKind::kThing) = 1 - vehicle;
+      return true;
+    }),
+              vehicle < 0.1 ? 2 : 1);
+    return chanceOf(row.clusters[0], ClusterKind::kVehicle);
+  };
+  EXPECT_EQ(whole(0.2), 0.75);
+  EXPECT_EQ(whole(0.9), 0.9);
+  EXPECT_EQ(whole(0.05), 0.75) << "surely none: the pieces stand for themselves";
 }
 
 TEST(VehiclePieces, AHighVanTakesNothingBesideIt) {
