@@ -70,12 +70,18 @@ std::optional<Look> weighedLookOf(const Track& track, const Measurement& m,
                                   const MeasurementScan& scan, const ClassValues& detection,
                                   const ClassTable& classes) {
   std::optional<Look> look = lookOf(track, m, scan, detection);
-  if (!look || !m.view || !isClearAir(scan)) return look;
+  if (!look || !m.view) return look;
   const double returns = look->view.returns;
-  const double weight = std::max(1.0, kVehicleWeight * returns / (returns + kFewReturns));
-  for (std::size_t j = 0; j < look->said.size(); ++j)
-    if (classes[static_cast<ClassId>(j)].shape == ObjectShape::kVehicle && look->said[j] > 0)
-      look->said[j] *= weight;
+  const double vehicle = isClearAir(scan) && seenBy(track, scan.sensor)
+                             ? std::max(1.0, kVehicleWeight * returns / (returns + kFewReturns))
+                             : 1;
+  const double pedestrian = look->memory->pedestrianWeight(returns);
+  for (std::size_t j = 0; j < look->said.size(); ++j) {
+    if (look->said[j] <= 0) continue;
+    const ObjectShape shape = classes[static_cast<ClassId>(j)].shape;
+    if (shape == ObjectShape::kVehicle) look->said[j] *= vehicle;
+    if (shape == ObjectShape::kPedestrian) look->said[j] *= pedestrian;
+  }
   return look;
 }
 
@@ -182,7 +188,7 @@ void rememberBirth(const Measurement& m, const MeasurementScan& scan, const Filt
   if (!look) return;
   rememberEvidence(*look, scan, track);
   for (std::size_t j = 0; m.view && j < m.log_class.size(); ++j)
-    if (look->said[j] > m.log_class[j]) track.log_class[j] += look->said[j] - m.log_class[j];
+    if (look->said[j] != m.log_class[j]) track.log_class[j] += look->said[j] - m.log_class[j];
 }
 
 }  // namespace perception

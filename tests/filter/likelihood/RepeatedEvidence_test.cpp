@@ -142,8 +142,10 @@ struct VehicleInClearAir : RepeatFixture {
     scan.verdicts.emplace();
     return scan;
   }
-  ClassValues weighed(const MeasurementScan& scan) const {
-    return weighedLookOf({}, scan.measurements[0], scan, {}, model.classes)->said;
+  /// Of a track that was born from the same.
+  ClassValues weighed(const MeasurementScan& scan) const { return weighed(scan, born(scan)); }
+  ClassValues weighed(const MeasurementScan& scan, const Track& track) const {
+    return weighedLookOf(track, scan.measurements[0], scan, {}, model.classes)->said;
   }
 };
 
@@ -168,17 +170,36 @@ TEST(RepeatedEvidence, AmongPhantomsAndByOtherSensorsVehiclesAreNotStronger) {
   EXPECT_EQ(f.weighed(scan)[0], 1.5);
 }
 
-TEST(RepeatedEvidence, BirthsAndHitsTellVehiclesAlike) {
+TEST(RepeatedEvidence, ABirthTellsAVehicleAsItsModelSaysAndEachHitStronger) {
   const VehicleInClearAir f;
   const MeasurementScan scan = f.of(100, {1.5, -0.5});
-  const double said = 1.5 * 1.3 * 100 / 115 + 0.5;
+  EXPECT_EQ(f.weighed(scan, Track{})[0], 1.5);
   Track track = f.born(scan);
-  EXPECT_NEAR(odds(track), std::log(0.6 / 0.4) + said, 1e-9);
+  EXPECT_NEAR(odds(track), std::log(0.6 / 0.4) + 2, 1e-9);
   MeasurementScan later = f.of(100, {1.5, -0.5});
   later.state.stamp = later.state.stamp + 0.1;
   track = f.hit(track, later);
-  EXPECT_NEAR(odds(track), std::log(0.6 / 0.4) + said * f.memory.looks(track.evidence.at(0).views),
+  const EvidenceSeen& seen = track.evidence.at(0);
+  EXPECT_GT(seen.mean[0], 1.5);
+  EXPECT_LT(seen.mean[0], 1.5 * 1.3 * 100 / 115) << "the mean of both looks";
+  EXPECT_NEAR(odds(track), std::log(0.6 / 0.4) + (seen.mean[0] + 0.5) * f.memory.looks(seen.views),
               1e-6);
+}
+
+TEST(RepeatedEvidence, AShapeOfFewReturnsTellsPedestriansWeaker) {
+  VehicleInClearAir f;
+  f.model.classes.classes[0].shape = ObjectShape::kPedestrian;
+  EXPECT_EQ(f.weighed(f.of(20, {1.5, -0.5}))[0], 1.5) << "of a model that knows no posts";
+  f.memory.few_of_pedestrian = 25;
+  MeasurementScan scan = f.of(20, {1.5, -0.5});
+  const double said = 1.5 * 1.2 * 20 / 45;
+  EXPECT_NEAR(f.weighed(scan)[0], said, 1e-12);
+  EXPECT_NEAR(odds(f.born(scan)), std::log(0.6 / 0.4) + said + 0.5, 1e-9) << "a birth alike";
+  scan.verdicts->suspicious = 1;
+  EXPECT_NEAR(f.weighed(scan)[0], said, 1e-12) << "so among phantoms";
+  EXPECT_EQ(f.weighed(f.of(125, {1.5, -0.5}))[0], 1.5);
+  EXPECT_EQ(f.weighed(f.of(500, {1.5, -0.5}))[0], 1.5);
+  EXPECT_EQ(f.weighed(f.of(20, {-1.5, 0.5}))[0], -1.5) << "what speaks against it counts in full";
 }
 
 // In the update ---------------------------------------------------------------------------------

@@ -185,6 +185,17 @@ TEST(ClusterClassifier, ReadsWhatItWroteBitForBit) {
   EXPECT_TRUE(after.provenance().simulated_only);
 }
 
+TEST(ClusterClassifier, ModelsOfRecordingsBelieveFewReturnsLessThatTheyAreAPedestrian) {
+  const ClusterClassifier simulated = example();
+  EXPECT_EQ(simulated.memory().pedestrianWeight(20), 1);
+  Provenance recorded = simulated.provenance();
+  recorded.simulated_only = false;
+  const ClusterClassifier model(simulated.trees(), simulated.calibrations(), simulated.prior(),
+                                simulated.memory(), recorded);
+  EXPECT_NEAR(model.memory().pedestrianWeight(20), 1.2 * 20 / 45, 1e-12);
+  EXPECT_EQ(model.memory().pedestrianWeight(125), 1);
+}
+
 TEST(ClusterClassifier, WritesOneTreeALine) {
   const std::string text = example().write();
   std::size_t lines = 0;
