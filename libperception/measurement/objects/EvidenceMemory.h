@@ -24,8 +24,8 @@ struct EvidenceMemory {
   /// [rad] change of bearing, or change of the log of the range, by which the say of earlier views
   /// falls to 1/e: an object that comes near is judged anew.
   double renewal = 0.5;
-  /// Returns that have .6 of the say for a pedestrian, of 125 and more all: posts, trunks and signs
-  /// of few returns look like people again and again. 0: any number of returns has all of it.
+  /// Returns that have .6 of the say for a pedestrian, five times as many all of it: posts, trunks
+  /// and signs of few returns look like people again and again. 0: any number has all of it.
   double few_of_pedestrian = 0;
 
   /// Of what speaks for a pedestrian.
