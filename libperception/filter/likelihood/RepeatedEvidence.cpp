@@ -25,6 +25,20 @@ constexpr double kLeastSaid = -12;  // under the likeliest class: a class never 
 /// vehicles by models that have not seen the recording: docs/decisions/lidar.md).
 constexpr double kVehicleWeight = 1.3, kFewReturns = 15;
 
+/// [m/s] at which a post or trunk may seem to move, as its visible part changes (assumed).
+constexpr double kStandingSpeed = 0.5;
+
+/// By how many deviations the track, if it is of class j, moves faster, as the share of a normal
+/// distribution within so many: 0 if it may stand, near 1 if it surely walks.
+double sureOfMotion(const Track& track, std::size_t j) {
+  const ClassFilter& f = track.bank[track.filterOf(j)];
+  const Vector2 v = f.x.tail<2>();
+  const double speed = v.norm();
+  if (speed <= kStandingSpeed) return 0;
+  const double variance = v.dot(f.P.bottomRightCorner<2, 2>() * v) / (speed * speed);
+  return std::erf((speed - kStandingSpeed) / std::sqrt(2 * variance));
+}
+
 /// Whether a front end has judged all clusters of a scan to be no phantoms.
 bool isClearAir(const MeasurementScan& scan) {
   return scan.verdicts && scan.verdicts->suspicious == 0 && scan.verdicts->phantoms.empty();
@@ -80,7 +94,8 @@ std::optional<Look> weighedLookOf(const Track& track, const Measurement& m,
     if (look->said[j] <= 0) continue;
     const ObjectShape shape = classes[static_cast<ClassId>(j)].shape;
     if (shape == ObjectShape::kVehicle) look->said[j] *= vehicle;
-    if (shape == ObjectShape::kPedestrian) look->said[j] *= pedestrian;
+    if (shape == ObjectShape::kPedestrian && pedestrian < 1)
+      look->said[j] *= pedestrian + (1 - pedestrian) * sureOfMotion(track, j);
   }
   return look;
 }

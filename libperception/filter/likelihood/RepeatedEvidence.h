@@ -25,7 +25,7 @@ std::optional<Look> lookOf(const Track& track, const Measurement& m, const Measu
                            const ClassValues& detection);
 /// The same. In clear air, what a shape of many returns says for a vehicle counts more from the
 /// second look on, since the shape model is too careful there, and of few returns less for a
-/// pedestrian (method.md 5.6).
+/// pedestrian who does not surely walk (method.md 5.6).
 std::optional<Look> weighedLookOf(const Track& track, const Measurement& m,
                                   const MeasurementScan& scan, const ClassValues& detection,
                                   const ClassTable& classes);

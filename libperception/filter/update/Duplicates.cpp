@@ -23,6 +23,8 @@ const double kLogSureClass = std::log(0.95), kLogLikelyClass = std::log(0.5);
 constexpr double kShortestHeadway = 0.1, kDriving = 8, kOverlap = 0.5;
 /// [m/s] by which their speeds differ at most; [m] length of the longest vehicle with a trailer.
 constexpr double kSameSpeed = 1.5, kLongestTrain = 20;
+/// Deviations by which headings of one vehicle's parts differ at most (assumed).
+constexpr double kHeadingSigmas = 2;
 /// Deviations by which a cyclist is at most longer than the mean.
 constexpr double kCyclistSigmas = 4;
 
@@ -39,7 +41,8 @@ struct Footprint {
   Stamp last_hit;
   bool fresh = true;  // of this scan
   bool oriented = false;
-  double speed = 0;  // [m/s] along yaw; 0 where it is not sure
+  double speed = 0;         // [m/s] along yaw; 0 where it is not sure
+  double yaw_variance = 0;  // [rad^2] where the speed is sure
 };
 
 /// For tracks with deferred prediction, the predicted position.
@@ -57,7 +60,8 @@ Footprint footprintOf(const Track& t, const FilterModel& model, Stamp now) {
   out.corner2 = out.half.squaredNorm() + 1e-6;
   out.yaw = f.oriented ? f.x[3] : 0;
   out.oriented = f.oriented;
-  if (f.oriented && f.x[2] * f.x[2] > 9 * f.P(2, 2)) out.speed = f.x[2];
+  if (f.oriented && f.x[2] * f.x[2] > 9 * f.P(2, 2))
+    out.speed = f.x[2], out.yaw_variance = f.P(3, 3);
   const double log_class = t.log_class[static_cast<std::size_t>(best)];
   out.sure = log_class >= kLogSureClass;
   out.vehicle = log_class >= kLogLikelyClass && model.classes[best].motion->has_heading;
@@ -87,8 +91,12 @@ bool isTrain(const Footprint& a, const Footprint& b) {
   const double length = 2 * (a.half.x() + b.half.x());
   const double gap = std::abs(apart.x()) - length / 2,
                most = slower >= kDriving ? kShortestHeadway * std::abs(a.speed) : -kOverlap;
+  // The heading of a newborn errs, which turns its velocity and says little of another way.
+  const Vector2 faster = rotate2(-a.yaw, a.speed * along - b.speed * other);
+  const double sideways =
+      kSameSpeed + kHeadingSigmas * slower * std::sqrt(a.yaw_variance + b.yaw_variance);
   return std::abs(apart.y()) < std::max(a.half.y(), b.half.y()) &&
-         (a.speed * along - b.speed * other).norm() < kSameSpeed && gap < most &&
+         std::abs(faster.x()) < kSameSpeed && std::abs(faster.y()) < sideways && gap < most &&
          length + gap < kLongestTrain;
 }
 

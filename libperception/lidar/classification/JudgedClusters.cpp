@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "libperception/core/math/LogMath.h"
 #include "libperception/lidar/classification/CloudedSurfaces.h"
 #include "libperception/lidar/classification/PhantomPrior.h"
 #include "libperception/lidar/classification/VehiclePieces.h"
@@ -17,16 +18,13 @@ namespace {
 
 using Probabilities = PhantomPrior::Probabilities;
 
-/// Probability of the likeliest road user.
-double roadUser(const Probabilities& p) {
+/// That of the likeliest road user, of probabilities or of evidence.
+template <std::size_t n>
+double roadUser(const std::array<double, n>& p) {
   return *std::max_element(p.begin(), p.begin() + kRoadUsers);
 }
 
 double at(const Probabilities& p, ClusterKind kind) { return p[static_cast<std::size_t>(kind)]; }
-
-double roadUserEvidence(const JudgedCluster& c) {
-  return *std::max_element(c.evidence.begin(), c.evidence.begin() + kRoadUsers);
-}
 
 /// Least probability at which a part stands for itself, and that of a whole which is not looked
 /// into (assumed).
@@ -45,6 +43,9 @@ constexpr double kSuspicious = 0.5;
 /// Where the air is likely not clear, P(phantom) from which a cluster may be a surface with what is
 /// in the air about it (assumed).
 constexpr double kNotClear = 0.5, kPerhapsPhantom = 0.2;
+/// Least evidence of a road user for a wall in a cloud that stands for it: that of one in ten is
+/// .23 (assumed).
+constexpr double kRoadUserInCloud = 1;
 constexpr float kDoubted = 0.5f;  // trust of a return below which it is doubted
 
 /// Largest road users [m], longer and shorter side, with what returns beside them add: people with
@@ -73,7 +74,13 @@ Probabilities withinSize(Probabilities p, const Descriptor& d, double top_of_vie
 
 bool isVehicle(const JudgedCluster& c, double least_evidence) {
   const double vehicle = c.evidence[static_cast<std::size_t>(ClusterKind::kVehicle)];
-  return vehicle > least_evidence && vehicle >= roadUserEvidence(c);
+  return vehicle > least_evidence && vehicle >= roadUser(c.evidence);
+}
+
+Vector2 middleOf(const LidarDetections& found, const std::vector<std::uint32_t>& obstacles) {
+  Vector2 sum = Vector2::Zero();
+  for (const std::uint32_t i : obstacles) sum += Vector2(found.x[i], found.y[i]);
+  return sum / static_cast<double>(obstacles.size());
 }
 
 /// Drops what lies in the footprint of a likely vehicle: its seats, its roof, what is seen through
@@ -81,23 +88,13 @@ bool isVehicle(const JudgedCluster& c, double least_evidence) {
 void dropFragments(const LidarDetections& found, std::vector<JudgedCluster>& judged) {
   constexpr double kMargin = 0.3;  // [m] about the box of its returns (assumed)
   constexpr double kPerson = 1;    // evidence by which a person beside it stands (assumed)
-  const auto placesOf = [&](const JudgedCluster& j) {
-    std::vector<Vector2> places;
-    places.reserve(j.points.size());
-    for (const std::uint32_t i : j.points)
-      places.emplace_back(static_cast<double>(found.x[i]), static_cast<double>(found.y[i]));
-    return places;
-  };
   std::vector<Vector2> centers;
-  for (const JudgedCluster& j : judged) {
-    Vector2 sum = Vector2::Zero();
-    for (const Vector2& p : placesOf(j)) sum += p;
-    centers.push_back(sum / static_cast<double>(j.points.size()));
-  }
+  for (const JudgedCluster& j : judged) centers.push_back(middleOf(found, j.points));
   std::vector<char> fragment(judged.size(), 0);
   for (std::size_t v = 0; v < judged.size(); ++v) {
     if (!isVehicle(judged[v], 0)) continue;
-    const std::vector<Vector2> places = placesOf(judged[v]);
+    std::vector<Vector2> places;
+    for (const std::uint32_t i : judged[v].points) places.emplace_back(found.x[i], found.y[i]);
     double radius2 = 0;
     for (const Vector2& p : places) radius2 = std::max(radius2, (p - centers[v]).squaredNorm());
     // The box reaches no farther from their center along either side; most have nothing near.
@@ -141,13 +138,6 @@ void dropLoose(const LidarDetections& found, const DirectionCells& cells,
       kept.push_back(j.points[k]);
     j.points = std::move(kept);
   }
-}
-
-Vector2 middleOf(const LidarDetections& found, const std::vector<std::uint32_t>& obstacles) {
-  Vector2 middle = Vector2::Zero();
-  for (const std::uint32_t i : obstacles)
-    middle += Vector2(found.x[i], found.y[i]) / static_cast<double>(obstacles.size());
-  return middle;
 }
 
 PhantomCluster phantomOf(const LidarDetections& found, const std::vector<std::uint32_t>& obstacles,
@@ -217,19 +207,21 @@ class RoadUserCollector {
     cluster.looks_phantom = classifier_.phantomEvidence(described.probabilities);
     cluster.cause = std::max({causes.weather, causes.cloud, causes.spray});
     cluster.evidence = classifier_.evidence(p);
-    if (roadUserEvidence(cluster) < kSurelyThing) return;
+    if (roadUser(cluster.evidence) < kSurelyThing) return;
     cluster.points = std::move(described.segment.points);
     const float isolation = described.descriptor[static_cast<std::size_t>(Feature::kIsolation)];
     cluster.alone = isolation > 0.5f;
     judged_.push_back(std::move(cluster));
   }
 
-  /// Those that are likelier surfaces than phantoms; whether there is one.
-  bool addSurfaces(std::vector<DescribedCluster> surfaces, const CausesHere& causes) {
+  /// Those that are likelier surfaces than phantoms, with at least such evidence of a road user;
+  /// whether there is one.
+  bool addSurfaces(std::vector<DescribedCluster> surfaces, const CausesHere& causes, double least) {
     bool any = false;
     for (DescribedCluster& surface : surfaces) {
       const Probabilities p = among(surface, causes);
-      if (at(p, ClusterKind::kPhantom) > kSuspicious) continue;
+      if (at(p, ClusterKind::kPhantom) > kSuspicious || roadUser(classifier_.evidence(p)) < least)
+        continue;
       add(surface, p, causes);
       any = true;
     }
@@ -284,8 +276,12 @@ Judgement judgedClusters(const LidarDetections& found, const LidarCloud& cloud,
     if (sure)
       judgement.verdicts.phantoms.push_back(phantomOf(found, cluster.segment.points, phantom));
     const bool mixed = causes.weather > kNotClear && phantom > kPerhapsPhantom;
-    if (mixed &&
-        collector.addSurfaces(surfacesIn(cluster.segment.points, found, describer, judge), causes))
+    if (mixed && collector.addSurfaces(surfacesIn(cluster.segment.points, found, describer, judge),
+                                       causes, kMinusInfinity))
+      continue;
+    if (std::max(causes.likelier(), causes.spray) > kNotClear && phantom > kPerhapsPhantom &&
+        collector.addSurfaces(wallsIn(cluster.segment.points, found, cells, describer, judge),
+                              causes, kRoadUserInCloud))
       continue;
     if (!sure) collector.add(cluster, p, causes);
   }

@@ -47,15 +47,14 @@ void predictDisc(const Vector2& d, const Extent& extent, double forward, AxisPre
   out.H_extent.row(FootprintModel::kRange).setConstant(-0.25);
 }
 
-void predictRectangle(const Vector2& d, double yaw, const Extent& extent, double forward,
-                      AxisPrediction& out) {
+void predictRectangle(const Vector2& d, double yaw, const Extent& extent, double corner_radius,
+                      double forward, AxisPrediction& out) {
   const Vector2 u(std::cos(yaw), std::sin(yaw)), n = perpendicular(u);
   const Vector2 half(0.5 * extent.length, 0.5 * extent.width);
   const Vector2 sensor(-u.dot(d), -n.dot(d));  // in the object's frame
   const Vector2 nearest(std::clamp(sensor.x(), -half.x(), half.x()),
                         std::clamp(sensor.y(), -half.y(), half.y()));
-  const double range = (sensor - nearest).norm();
-  out.defined = range > kClearance;
+  out.defined = (sensor - nearest).norm() > kClearance;
   if (!out.defined) return;
   resize(out);
 
@@ -87,19 +86,40 @@ void predictRectangle(const Vector2& d, double yaw, const Extent& extent, double
       if (offset < right) right = offset, right_corner = {ex, ey};
     }
   }
+  // The point of the rounded corner e where its normal is `outward`, in the object's frame.
+  const double round = std::min(corner_radius, 0.25 * extent.width);
+  const double round_dwidth = round < corner_radius ? 0.25 : 0;
+  const auto onCorner = [&](const Vector2& e, const Vector2& outward) {
+    const Vector2 normal(u.dot(outward), n.dot(outward));
+    const Vector2 own = e.cwiseProduct(half) + round * (normal - e);
+    derivatives(own, e, dq, dextent);
+    dextent.col(1) += round_dwidth * (outward - e.x() * u - e.y() * n);
+    return own;
+  };
   for (const auto& [e, row] : {std::pair{left_corner, FootprintModel::kLeft},
                                std::pair{right_corner, FootprintModel::kRight}}) {
-    const Vector2 own = e.cwiseProduct(half);
-    derivatives(own, e, dq, dextent);
-    setBearing(point(own), forward, dq, dextent, row, out);
+    // The line of sight touches the circle of the corner.
+    const Vector2 c = point(e.cwiseProduct(half - Vector2::Constant(round)));
+    const double side = row == FootprintModel::kLeft ? 1 : -1, sine = round / c.norm();
+    const Vector2 outward =
+        (side * std::sqrt(1 - sine * sine) * perpendicular(c) - sine * c) / c.norm();
+    setBearing(point(onCorner(e, outward)), forward, dq, dextent, row, out);
   }
-  // Nearest point: along an edge it slides, but then the distance does not change to first order
-  // (envelope theorem).
-  const Vector2 e(std::abs(sensor.x()) > half.x() ? (sensor.x() > 0 ? 1 : -1) : 0,
-                  std::abs(sensor.y()) > half.y() ? (sensor.y() > 0 ? 1 : -1) : 0);
-  derivatives(nearest, e, dq, dextent);
-  const Eigen::RowVector2d away = point(nearest).transpose() / range;
-  out.h[FootprintModel::kRange] = range;
+  // Nearest point: along an edge or a rounded corner it slides, but then the distance does not
+  // change to first order (envelope theorem).
+  const Vector2 sign(sensor.x() > 0 ? 1 : -1, sensor.y() > 0 ? 1 : -1);
+  const Vector2 past = sensor.cwiseAbs() - half + Vector2::Constant(round);
+  Vector2 closest = nearest;
+  if (past.x() > 0 && past.y() > 0) {
+    const Vector2 normal = sign.cwiseProduct(past) / past.norm();
+    closest = onCorner(sign, normal.x() * u + normal.y() * n);
+  } else {
+    derivatives(nearest, past.x() > past.y() ? Vector2(sign.x(), 0) : Vector2(0, sign.y()), dq,
+                dextent);
+  }
+  const double distance = (sensor - closest).norm();
+  const Eigen::RowVector2d away = point(closest).transpose() / distance;
+  out.h[FootprintModel::kRange] = distance;
   out.H_q.row(FootprintModel::kRange) = away * dq;
   out.H_extent.row(FootprintModel::kRange) = away * dextent;
 }

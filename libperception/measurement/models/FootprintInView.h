@@ -15,8 +15,9 @@ inline Vector2 perpendicular(const Vector2& v) { return {-v.y(), v.x()}; }
 /// A disc of diameter (length + width) / 2 (method.md 4.1).
 void predictDisc(const Vector2& d, const Extent& extent, double forward, AxisPrediction& out);
 
-/// The oriented rectangle: extreme corners and exact nearest point (method.md 4.1).
-void predictRectangle(const Vector2& d, double yaw, const Extent& extent, double forward,
-                      AxisPrediction& out);
+/// The oriented rectangle whose corners are rounded by `corner_radius` [m], at most by a quarter of
+/// its width: tangents and exact nearest point (method.md 4.1).
+void predictRectangle(const Vector2& d, double yaw, const Extent& extent, double corner_radius,
+                      double forward, AxisPrediction& out);
 
 }  // namespace perception

@@ -114,7 +114,8 @@ void FootprintModel::predict(const Kinematics* objects, const Extent* extents, s
   for (std::size_t i = 0; i < count; ++i) {
     const Vector2 d = objects[i].q.head<2>() - origin;
     if (objects[i].has_yaw) {
-      predictRectangle(d, objects[i].q[Kinematics::kYaw], extents[i], forward, out[i]);
+      predictRectangle(d, objects[i].q[Kinematics::kYaw], extents[i],
+                       detection_model_.params().corner_radius, forward, out[i]);
     } else {
       predictDisc(d, extents[i], forward, out[i]);
     }

@@ -202,6 +202,26 @@ TEST(RepeatedEvidence, AShapeOfFewReturnsTellsPedestriansWeaker) {
   EXPECT_EQ(f.weighed(f.of(20, {-1.5, 0.5}))[0], -1.5) << "what speaks against it counts in full";
 }
 
+TEST(RepeatedEvidence, WhatSurelyWalksIsNoPost) {
+  VehicleInClearAir f;
+  f.model.classes.classes[0].shape = ObjectShape::kPedestrian;
+  f.memory.few_of_pedestrian = 25;
+  const MeasurementScan scan = f.of(20, {1.5, -0.5});
+  const double said = 1.5 * 1.2 * 20 / 45;
+  const auto at = [&](double vx, double vy, double sigma) {
+    Track track = f.born(scan);
+    track.bank[0].x.tail<2>() = Vector2(vx, vy);
+    track.bank[0].P.bottomRightCorner<2, 2>() = sigma * sigma * Matrix2::Identity();
+    return f.weighed(scan, track)[0];
+  };
+  EXPECT_EQ(at(0.3, -0.4, 0.01), said) << "views of a post change by as much";
+  EXPECT_NEAR(at(0.9, -1.2, 0.1), 1.5, 1e-9) << "a walk of 1.5 m/s, by ten deviations";
+  const double half = at(0, 1, 0.5);
+  EXPECT_NEAR(half, said + (1.5 - said) * std::erf(1 / std::sqrt(2)), 1e-12);
+  EXPECT_LT(at(0, 1, 1), half);
+  EXPECT_GT(at(0, 1, 1), said);
+}
+
 // In the update ---------------------------------------------------------------------------------
 
 TEST(RepeatedEvidence, IdenticalEvidenceConverges) {

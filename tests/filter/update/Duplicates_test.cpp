@@ -229,6 +229,16 @@ TEST(Duplicates, TwoPartsThatDriveABumperApartAreOneVehicle) {
   EXPECT_EQ(tracksThatStay(driving(1, 10, 0, 25), driving(2, 15.5, 0.3, 25.4)), 1U);
 }
 
+TEST(Duplicates, ANewbornOnTheLineOfAVehicleIsAPartOfItAlthoughItsHeadingErrs) {
+  Track newborn = driving(2, 15.5, 0.3, 25);
+  newborn.bank[0].x[3] = 0.16;  // 4 m/s across
+  EXPECT_EQ(tracksThatStay(driving(1, 10, 0, 25), newborn), 2U) << "the heading is known";
+  newborn.bank[0].P(3, 3) = 0.04;
+  EXPECT_EQ(tracksThatStay(driving(1, 10, 0, 25), newborn), 1U);
+  newborn.bank[0].x[2] = 22;
+  EXPECT_EQ(tracksThatStay(driving(1, 10, 0, 25), newborn), 2U) << "it is slower";
+}
+
 TEST(Duplicates, VehiclesThatFollowEachOtherAreTwo) {
   EXPECT_EQ(tracksThatStay(driving(1, 10, 0, 25), driving(2, 20, 0, 25)), 2U) << "0.2 s behind";
   EXPECT_EQ(tracksThatStay(driving(1, 10, 0, 3), driving(2, 15, 0, 3)), 2U) << "in a queue";

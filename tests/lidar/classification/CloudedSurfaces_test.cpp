@@ -57,13 +57,16 @@ std::vector<std::uint32_t> nearPerson(const LidarDetections& found) {
       found, [](double x, double y) { return x > 6.5 && x < 9 && std::abs(y) < 1.2; });
 }
 
-std::vector<DescribedCluster> surfaces(const SensorFrame& frame) {
+/// The surfaces near the person, by trust or, `walls`, by the beams that pass.
+std::vector<DescribedCluster> surfaces(const SensorFrame& frame, bool walls = false) {
   const LidarDetections found = test::plainFrontEnd().detect(frame);
   const DirectionCells cells(found.points);
   const ClusterDescriber describer(found, std::get<LidarCloud>(frame.data), cells);
   const auto near = nearPerson(found);
   EXPECT_GT(near.size(), 50u);
-  return surfacesIn(near, found, describer, [](const DescribedCluster&) { return false; });
+  const auto judge = [](const DescribedCluster&) { return false; };
+  return walls ? wallsIn(near, found, cells, describer, judge)
+               : surfacesIn(near, found, describer, judge);
 }
 
 double lengthOf(const DescribedCluster& c) {
@@ -78,6 +81,30 @@ TEST(CloudedSurfaces, APersonIsLeftWithoutTheFogAbout) {
 }
 
 TEST(CloudedSurfaces, FogAloneHasNone) { EXPECT_TRUE(surfaces(personInFog(false)).empty()); }
+
+TEST(CloudedSurfaces, NoBeamPassesAPersonInSpray) {
+  const auto walls = surfaces(personInFog(), true);
+  ASSERT_EQ(walls.size(), 1u);
+  EXPECT_LT(lengthOf(walls[0]), 0.8);
+  EXPECT_GT(walls[0].segment.points.size(), 100u);
+  EXPECT_TRUE(surfaces(personInFog(false), true).empty()) << "beams pass spray";
+}
+
+TEST(CloudedSurfaces, APersonInSprayOfWhichNothingIsDoubtedIsMeasured) {
+  SensorFrame frame = personInFog();
+  std::get<LidarCloud>(frame.data).trust.clear();
+  const LidarDetections found = test::plainFrontEnd().detect(frame);
+  const auto personsIn = [&](const CausesHere& causes) {
+    const Judgement judgement =
+        judgedClusters(found, std::get<LidarCloud>(frame.data), DirectionCells(found.points),
+                       personsOrPhantoms(), [=](const Vector2&) { return causes; });
+    return std::count_if(judgement.clusters.begin(), judgement.clusters.end(),
+                         [](const JudgedCluster& c) { return c.evidence[0] > 1; });
+  };
+  EXPECT_EQ(personsIn({}), 0) << "in clear air the cluster is what it looks like";
+  EXPECT_EQ(personsIn({0, 0, 0, 0, 1}), 1) << "vehicles throw up spray";
+  EXPECT_EQ(personsIn({0, 0, 1, 1, 0}), 1) << "a vehicle has just left the place";
+}
 
 TEST(CloudedSurfaces, APersonInWhatIsLikelyFogIsMeasured) {
   const SensorFrame frame = personInFog();
