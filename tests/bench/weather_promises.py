@@ -1,9 +1,9 @@
 #!/usr/bin/python3
 """Reads one figure of the table of weather_promises.sh, prints its line, ends with 1 where what is wanted is not met.
 
-    tests/bench/quality/weather_promises.py ROW FILE...
-    tests/bench/quality/weather_promises.py --absent ROW WHAT
-    tests/bench/quality/weather_promises.py --head
+    tests/bench/weather_promises.py ROW FILE...
+    tests/bench/weather_promises.py --absent ROW WHAT
+    tests/bench/weather_promises.py --head
 """
 import csv
 import json
