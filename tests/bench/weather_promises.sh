@@ -239,8 +239,11 @@ realism() {
 python3 tests/bench/weather_promises.py --head
 missed=() making_town=
 if ((${#chosen[@]} > 1)) && [[ " ${chosen[*]} " == *" town "* ]]; then
+  set -m  # a process group of its own, which ends with the script
   (row=town_log && town_log) &
   making_town=$!
+  set +m
+  trap 'kill -- "-$making_town" 2>/dev/null || true' EXIT
 fi
 for row in "${chosen[@]}"; do
   [[ $row != town || -z $making_town ]] || wait "$making_town" || true  # the row says what failed
