@@ -183,7 +183,7 @@ std::string lidarSection(const LogSurvey& survey, const std::string& label,
   const double range = std::clamp(tens(facts.rangeBelow(kNearlyAll)), 10.0, kClusterRange);
   std::string out = section(label, "lidar", 'L', 2, 0.5, range, fieldOf(facts.angleOf(kNearlyAll)));
   out += fmt::format("label_exponent = 0.05\n");
-  if (!files.model.empty()) out += "detection_exponent = 0.02\n";
+  if (!files.model.empty()) out += "detection_exponent = 0.02\ncorner_radius = 0.3\n";
   out += mountingLine(survey, facts);
   out += fmt::format("[sensor.{}.points]\n{}", label, vehicleLines(survey, facts));
   if (!files.model.empty())

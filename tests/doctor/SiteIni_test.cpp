@@ -49,6 +49,15 @@ PipelineSetup setupOf(const LogSurvey& survey) {
   return setup;
 }
 
+TEST(SiteIni, LidarsThatTellShapesSeeRoundCorners) {
+  const auto survey = surveyOf("demo");
+  const auto textWith = [&](const std::string& model) {
+    return siteIni(survey, {"classes.ini", model}, "log");
+  };
+  EXPECT_NE(textWith("model.json").find("corner_radius = 0.3\n"), std::string::npos);
+  EXPECT_EQ(textWith("").find("corner_radius"), std::string::npos);
+}
+
 TEST(SiteIni, OfEveryShippedLogIsReadWithoutFault) {
   for (const char* name : {"demo", "ibeo", "radar", "gnss", "camera"}) {
     SCOPED_TRACE(name);
