@@ -26,7 +26,7 @@ struct DetectionParams {
   /// [-] of the standard deviations of all that its measurements say, where the sensor is worse
   /// than its front end knows (perception-calibrate gains counts it).
   double noise_scale = 1;
-  double corner_radius = 0;  ///< [m] by which corners of vehicles' outlines are rounded
+  double corner_radius = 0;   ///< [m] by which corners of vehicles' outlines are rounded
   std::optional<Pose3> pose;  ///< in the ego frame; overrides the pose of the log
   std::vector<std::pair<std::string, double>>
       clutter_labels;  ///< P(label | clutter); labels not listed share the rest evenly
