@@ -28,8 +28,8 @@ constexpr double kVehicleWeight = 1.3, kFewReturns = 15;
 /// [m/s] at which a post or trunk may seem to move, as its visible part changes (assumed).
 constexpr double kStandingSpeed = 0.5;
 
-/// By how many deviations the track, if it is of class j, moves faster, as the share of a normal
-/// distribution within so many: 0 if it may stand, near 1 if it surely walks.
+/// How sure it is that the track, if it is of class j, moves: 0 up to kStandingSpeed, near 1 where
+/// its speed lies many deviations beyond that.
 double sureOfMotion(const Track& track, std::size_t j) {
   const ClassFilter& f = track.bank[track.filterOf(j)];
   const Vector2 v = f.x.tail<2>();

@@ -23,7 +23,7 @@ const double kLogSureClass = std::log(0.95), kLogLikelyClass = std::log(0.5);
 constexpr double kShortestHeadway = 0.1, kDriving = 8, kOverlap = 0.5;
 /// [m/s] by which their speeds differ at most; [m] length of the longest vehicle with a trailer.
 constexpr double kSameSpeed = 1.5, kLongestTrain = 20;
-/// Deviations by which headings of one vehicle's parts differ at most (assumed).
+/// Deviations by which headings of one vehicle's parts differ at most, as newborns' err (assumed).
 constexpr double kHeadingSigmas = 2;
 /// Deviations by which a cyclist is at most longer than the mean.
 constexpr double kCyclistSigmas = 4;
@@ -91,7 +91,6 @@ bool isTrain(const Footprint& a, const Footprint& b) {
   const double length = 2 * (a.half.x() + b.half.x());
   const double gap = std::abs(apart.x()) - length / 2,
                most = slower >= kDriving ? kShortestHeadway * std::abs(a.speed) : -kOverlap;
-  // The heading of a newborn errs, which turns its velocity and says little of another way.
   const Vector2 faster = rotate2(-a.yaw, a.speed * along - b.speed * other);
   const double sideways =
       kSameSpeed + kHeadingSigmas * slower * std::sqrt(a.yaw_variance + b.yaw_variance);

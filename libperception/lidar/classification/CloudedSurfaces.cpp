@@ -32,10 +32,9 @@ std::vector<DescribedCluster> groupsOf(const std::vector<std::uint32_t>& firm,
     trust.push_back(found.trust.empty() ? 1 : found.trust[i]);
   }
   const SegmentFinder finder(x, y, above, kFewestReturns, kLongestCluster, trust, std::nullopt);
-  const auto no_parts = [](const Segment&) { return false; };
   std::vector<DescribedCluster> groups;
   for (std::size_t tree = 0; tree < finder.trees(); ++tree) {
-    for (const Segment& segment : finder.find(tree, no_parts)) {
+    for (const Segment& segment : finder.find(tree, [](const Segment&) { return false; })) {
       DescribedCluster group;
       for (const std::uint32_t k : segment.points) group.segment.points.push_back(firm[k]);
       if (isLow(found, group.segment.points)) continue;
@@ -68,7 +67,6 @@ std::vector<DescribedCluster> wallsIn(const std::vector<std::uint32_t>& cluster,
                                       const ClusterDescriber& describer,
                                       const ClusterVisitor& judge) {
   std::vector<std::uint32_t> points, firm;
-  points.reserve(cluster.size());
   for (const std::uint32_t i : cluster) points.push_back(found.obstacles[i]);
   const std::vector<float> shares = solidShares(cells, points);
   for (std::size_t k = 0; k < cluster.size(); ++k)

@@ -104,8 +104,7 @@ void DetectionParams::visit(ParamVisitor& v) {
          "tempers detections and missed detections in the class update");
   v.real("noise_scale", noise_scale, {0.1, 20}, "",
          "of the standard deviations of all that its measurements say");
-  v.real("corner_radius", corner_radius, {0, 0.5}, "m",
-         "by which the corners of vehicles' outlines are rounded");
+  v.real("corner_radius", corner_radius, {0, 0.5}, "m", "of the round corners of vehicles");
   std::vector<std::string> resolutions = cameraResolutionNames();
   resolutions.insert(resolutions.begin(), "none");
   v.choice("resolution", resolution, resolutions,

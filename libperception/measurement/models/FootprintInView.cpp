@@ -1,9 +1,9 @@
 #include "libperception/measurement/models/FootprintInView.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
-#include <utility>
 
 #include "libperception/measurement/models/FootprintModel.h"
 
@@ -23,6 +23,28 @@ void resize(AxisPrediction& out) {
   out.h.resize(FootprintModel::kAxes);
   out.H_q.setZero(FootprintModel::kAxes, 5);
   out.H_extent.setZero(FootprintModel::kAxes, 2);
+}
+
+/// Corners (+-1, +-1) of a rectangle with sides along u and n: that of FootprintModel::kLeft, that
+/// of kRight.
+std::array<Vector2, 2> extremeCorners(const Vector2& d, const Vector2& u, const Vector2& n,
+                                      const Vector2& half) {
+  // Corners are compared by the tangents of their angles from the center's direction; by the angles
+  // when the sensor is beside the object and corners lie behind it.
+  const double middle = std::atan2(d.y(), d.x());
+  const bool ahead = d.norm() > half.norm();
+  std::array<Vector2, 2> corners;
+  double left = -std::numeric_limits<double>::infinity(), right = -left;
+  for (const double ex : {-1.0, 1.0}) {
+    for (const double ey : {-1.0, 1.0}) {
+      const Vector2 c = d + ex * half.x() * u + ey * half.y() * n;
+      const double offset =
+          ahead ? perpendicular(d).dot(c) / d.dot(c) : wrapAngle(std::atan2(c.y(), c.x()) - middle);
+      if (offset > left) left = offset, corners[FootprintModel::kLeft] = {ex, ey};
+      if (offset < right) right = offset, corners[FootprintModel::kRight] = {ex, ey};
+    }
+  }
+  return corners;
 }
 
 }  // namespace
@@ -52,52 +74,36 @@ void predictRectangle(const Vector2& d, double yaw, const Extent& extent, double
   const Vector2 u(std::cos(yaw), std::sin(yaw)), n = perpendicular(u);
   const Vector2 half(0.5 * extent.length, 0.5 * extent.width);
   const Vector2 sensor(-u.dot(d), -n.dot(d));  // in the object's frame
-  const Vector2 nearest(std::clamp(sensor.x(), -half.x(), half.x()),
-                        std::clamp(sensor.y(), -half.y(), half.y()));
+  Vector2 nearest(std::clamp(sensor.x(), -half.x(), half.x()),
+                  std::clamp(sensor.y(), -half.y(), half.y()));
   out.defined = (sensor - nearest).norm() > kClearance;
   if (!out.defined) return;
   resize(out);
-
   const auto point = [&](const Vector2& own) { return Vector2(d + own.x() * u + own.y() * n); };
   // Derivatives (method.md (12)) of a point fixed in the object's frame up to its size: own = (ex
   // L/2, ey W/2) where e = +-1.
-  const auto derivatives = [&](const Vector2& own, const Vector2& e,
-                               Eigen::Matrix<double, 2, 5>& dq, Matrix2& dextent) {
+  Eigen::Matrix<double, 2, 5> dq;
+  Matrix2 dextent;
+  const auto derivatives = [&](const Vector2& own, const Vector2& e) {
     dq.setZero();
     dq.leftCols<2>().setIdentity();
     dq.col(4) = own.x() * n - own.y() * u;
     dextent.col(0) = 0.5 * e.x() * u;
     dextent.col(1) = 0.5 * e.y() * n;
   };
-  Eigen::Matrix<double, 2, 5> dq;
-  Matrix2 dextent;
-  // Corners are compared by the tangents of their angles from the center's direction; by the angles
-  // when the sensor is beside the object and corners lie behind it.
-  const double middle = std::atan2(d.y(), d.x());
-  const bool ahead = d.norm() > half.norm();
-  Vector2 left_corner, right_corner;
-  double left = -std::numeric_limits<double>::infinity(), right = -left;
-  for (const double ex : {-1.0, 1.0}) {
-    for (const double ey : {-1.0, 1.0}) {
-      const Vector2 c = point({ex * half.x(), ey * half.y()});
-      const double offset =
-          ahead ? perpendicular(d).dot(c) / d.dot(c) : wrapAngle(std::atan2(c.y(), c.x()) - middle);
-      if (offset > left) left = offset, left_corner = {ex, ey};
-      if (offset < right) right = offset, right_corner = {ex, ey};
-    }
-  }
   // The point of the rounded corner e where its normal is `outward`, in the object's frame.
   const double round = std::min(corner_radius, 0.25 * extent.width);
   const double round_dwidth = round < corner_radius ? 0.25 : 0;
   const auto onCorner = [&](const Vector2& e, const Vector2& outward) {
     const Vector2 normal(u.dot(outward), n.dot(outward));
     const Vector2 own = e.cwiseProduct(half) + round * (normal - e);
-    derivatives(own, e, dq, dextent);
+    derivatives(own, e);
     dextent.col(1) += round_dwidth * (outward - e.x() * u - e.y() * n);
     return own;
   };
-  for (const auto& [e, row] : {std::pair{left_corner, FootprintModel::kLeft},
-                               std::pair{right_corner, FootprintModel::kRight}}) {
+  const std::array<Vector2, 2> corners = extremeCorners(d, u, n, half);
+  for (const Eigen::Index row : {FootprintModel::kLeft, FootprintModel::kRight}) {
+    const Vector2& e = corners[static_cast<std::size_t>(row)];
     // The line of sight touches the circle of the corner.
     const Vector2 c = point(e.cwiseProduct(half - Vector2::Constant(round)));
     const double side = row == FootprintModel::kLeft ? 1 : -1, sine = round / c.norm();
@@ -109,16 +115,14 @@ void predictRectangle(const Vector2& d, double yaw, const Extent& extent, double
   // change to first order (envelope theorem).
   const Vector2 sign(sensor.x() > 0 ? 1 : -1, sensor.y() > 0 ? 1 : -1);
   const Vector2 past = sensor.cwiseAbs() - half + Vector2::Constant(round);
-  Vector2 closest = nearest;
   if (past.x() > 0 && past.y() > 0) {
     const Vector2 normal = sign.cwiseProduct(past) / past.norm();
-    closest = onCorner(sign, normal.x() * u + normal.y() * n);
+    nearest = onCorner(sign, normal.x() * u + normal.y() * n);
   } else {
-    derivatives(nearest, past.x() > past.y() ? Vector2(sign.x(), 0) : Vector2(0, sign.y()), dq,
-                dextent);
+    derivatives(nearest, past.x() > past.y() ? Vector2(sign.x(), 0) : Vector2(0, sign.y()));
   }
-  const double distance = (sensor - closest).norm();
-  const Eigen::RowVector2d away = point(closest).transpose() / distance;
+  const double distance = (sensor - nearest).norm();
+  const Eigen::RowVector2d away = point(nearest).transpose() / distance;
   out.h[FootprintModel::kRange] = distance;
   out.H_q.row(FootprintModel::kRange) = away * dq;
   out.H_extent.row(FootprintModel::kRange) = away * dextent;
