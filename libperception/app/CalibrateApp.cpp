@@ -32,7 +32,7 @@ class CalibrateApp : public App {
   int rounds = 0;                            ///< tempering: --runs; 0 = default of the task
   double seconds = 0;                        ///< of every log; 0 = all
   double truth_range = 30, truth_fov = 360;  ///< tempering: sector in which truth counts [m, deg]
-  LidarClassesOptions lidar_classes{{360}, false, "that of the logs", "not given"};
+  LidarClassesOptions lidar_classes{{360}, false, "", "that of the logs", "not given"};
   bool no_truth = false;  ///< gains: --no-truth
 
   void declare(CLI::App& cli) override;
@@ -110,6 +110,9 @@ void CalibrateApp::declare(CLI::App& cli) {
           ->check(CLI::Range(1.0, 360.0));
       sub->add_flag("--model-only", lidar_classes.model_only,
                     "Learn the model without judging each log by the others: no tables");
+      sub->add_option("--keep", lidar_classes.keep,
+                      "Model file to keep: only the shapes that it knows are learned anew, from "
+                      "recordings that it has learned from");
       sub->add_option("--license", lidar_classes.license,
                       "License that is written into the model file")
           ->capture_default_str();

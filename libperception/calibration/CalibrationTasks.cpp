@@ -219,6 +219,8 @@ StudyReport calibrateLidarClasses(const CalibrationInput& input,
     provenance.data.push_back(logs.back().name + (pass.simulated ? " (simulated)" : ""));
     provenance.simulated_only = provenance.simulated_only && pass.simulated;
   }
+  if (!options.keep.empty())
+    return knownShapesStudy(samples, logs, ClusterClassifier::read(options.keep));
   return clusterStudy(samples, logs, provenance, input.seed, options.model_only);
 }
 

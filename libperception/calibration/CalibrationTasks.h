@@ -37,6 +37,7 @@ struct LidarClassesOptions {
   std::vector<double> complete_fov{
       360};                   ///< [deg] in which the truth is complete: all, or one a log
   bool model_only = false;    ///< no tables
+  std::string keep;           ///< model file of which all stays but the shapes that it knows
   std::string license, date;  ///< for the model file
 };
 /// What clusters of lidar returns look like, learned.

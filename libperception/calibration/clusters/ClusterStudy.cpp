@@ -1,6 +1,7 @@
 #include "libperception/calibration/clusters/ClusterStudy.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -186,7 +187,52 @@ void judgeLeftOut(const ClusterSamples& samples, const std::vector<TrainingLog>&
   report.tables.push_back(std::move(reliability));
 }
 
+void addKnown(const KnownShapes& known, StudyReport& report) {
+  StudyTable table{"known",
+                   "Shapes that are known: examples, and the distance from them up to which a "
+                   "cluster counts as known",
+                   {"kind", "examples", "within"},
+                   {}};
+  for (std::size_t k = 0; k < kRoadUsers; ++k)
+    if (known.of(k).within > 0)
+      table.rows.push_back({kClusterKindNames[k], fmt::format("{}", known.of(k).examples.size()),
+                            fmt::format("{:.3f}", known.of(k).within)});
+  report.tables.push_back(std::move(table));
+}
+
+void addModel(const ClusterClassifier& model, StudyReport& report) {
+  addKnown(model.known(), report);
+  report.remarks.push_back(
+      "`lidar_classes.json` is the model for `[sensor.LABEL.classifier] file`.");
+  report.files.emplace_back("lidar_classes.json", model.write());
+}
+
+std::string namesOf(const std::vector<TrainingLog>& logs) {
+  std::string names;
+  for (const TrainingLog& log : logs)
+    names += fmt::format("{}{}{}", names.empty() ? "" : ", ", log.name,
+                         log.simulated ? " (simulated)" : "");
+  return names;
+}
+
 }  // namespace
+
+StudyReport knownShapesStudy(const ClusterSamples& samples, const std::vector<TrainingLog>& logs,
+                             const ClusterClassifier& model) {
+  const auto& learned = model.provenance().data;
+  for (const TrainingLog& log : logs)
+    if (!log.simulated && std::find(learned.begin(), learned.end(), log.name) == learned.end())
+      throw DataError(fmt::format("{}: the model has not learned from this log, expected one of {}",
+                                  log.name, fmt::join(learned, ", ")));
+  StudyReport report;
+  report.title = "What clusters of lidar returns look like: known shapes";
+  report.data = namesOf(logs);
+  ClusterTrainer trainer(samples, logs, 1);
+  addModel(ClusterClassifier(model.trees(), model.calibrations(), model.prior(), model.memory(),
+                             model.provenance(), trainer.examples(logs.size())),
+           report);
+  return report;
+}
 
 StudyReport clusterStudy(const ClusterSamples& samples, const std::vector<TrainingLog>& logs,
                          const Provenance& provenance, std::uint64_t seed, bool model_only) {
@@ -195,9 +241,7 @@ StudyReport clusterStudy(const ClusterSamples& samples, const std::vector<Traini
   StudyReport report;
   report.title = "What clusters of lidar returns look like";
   const bool simulated = std::any_of(logs.begin(), logs.end(), [](auto& l) { return l.simulated; });
-  for (const TrainingLog& log : logs)
-    report.data += fmt::format("{}{}{}", report.data.empty() ? "" : ", ", log.name,
-                               log.simulated ? " (simulated)" : "");
+  report.data = namesOf(logs);
   if (simulated && provenance.simulated_only) report.data = "simulated logs " + report.data;
 
   if (!model_only) judgeLeftOut(samples, logs, provenance, trainer, report);
@@ -210,9 +254,7 @@ StudyReport clusterStudy(const ClusterSamples& samples, const std::vector<Traini
                   "of {:.1f} rad, "
                   "of the log of the range of {:.1f}, or within {:.1f} s.",
                   memory.lasting, memory.kept, memory.bearing, memory.log_range, memory.time));
-  report.remarks.push_back(
-      "`lidar_classes.json` is the model for `[sensor.LABEL.classifier] file`.");
-  report.files.emplace_back("lidar_classes.json", final.write());
+  addModel(final, report);
   return report;
 }
 

@@ -14,4 +14,9 @@ namespace perception {
 StudyReport clusterStudy(const ClusterSamples& samples, const std::vector<TrainingLog>& logs,
                          const Provenance& provenance, std::uint64_t seed, bool model_only = false);
 
+/// The same model with the shapes that the recordings among `logs` show. Throws DataError where it
+/// has not learned from one of them, since what stands there is no more known for that.
+StudyReport knownShapesStudy(const ClusterSamples& samples, const std::vector<TrainingLog>& logs,
+                             const ClusterClassifier& model);
+
 }  // namespace perception

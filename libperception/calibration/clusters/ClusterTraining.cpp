@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "libperception/calibration/clusters/Isotonic.h"
+#include "libperception/calibration/clusters/ShapeExamples.h"
 #include "libperception/calibration/clusters/TreeTraining.h"
 
 namespace perception {
@@ -131,7 +132,15 @@ ClusterClassifier ClusterTrainer::classifier(std::size_t without, Provenance pro
   ClusterClassifier shape(train(without, without), calibrations, prior, EvidenceMemory{},
                           provenance);
   const EvidenceMemory memory = memoryOf(shape, without);
-  return ClusterClassifier(shape.trees(), calibrations, prior, memory, std::move(provenance));
+  return ClusterClassifier(shape.trees(), calibrations, prior, memory, std::move(provenance),
+                           examples(without));
+}
+
+KnownShapes ClusterTrainer::examples(std::size_t without) const {
+  std::vector<std::vector<std::size_t>> recorded;
+  for (std::size_t log = 0; log < logs_.size(); ++log)
+    if (log != without && !logs_[log].simulated) recorded.push_back(of_log_[log]);
+  return shapeExamples(samples_, recorded);
 }
 
 /// From evidence of logs that the trees had not seen: of a road user for its own kind, of a thing

@@ -54,12 +54,14 @@ double Calibration::operator()(double raw) const {
 ClusterClassifier::ClusterClassifier(BoostedTrees trees,
                                      std::array<Calibration, kClusterKinds> calibrations,
                                      const std::array<double, kClusterKinds>& prior,
-                                     const EvidenceMemory& memory, Provenance provenance)
+                                     const EvidenceMemory& memory, Provenance provenance,
+                                     KnownShapes known)
     : trees_(std::move(trees)),
       calibrations_(std::move(calibrations)),
       prior_(prior),
       memory_(memory),
-      provenance_(std::move(provenance)) {
+      provenance_(std::move(provenance)),
+      known_(std::move(known)) {
   memory_.few_of_pedestrian = provenance_.simulated_only ? 0 : kFewOfPedestrian;
   if (auto masks = LeafMasks::of(trees_)) masks_ = std::make_shared<LeafMasks>(std::move(*masks));
 }

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "libperception/lidar/classification/KnownShapes.h"
 #include "libperception/lidar/description/ClusterDescriptor.h"
 #include "libperception/lidar/description/ClusterKind.h"
 #include "libperception/measurement/objects/EvidenceMemory.h"
@@ -56,7 +57,7 @@ class ClusterClassifier {
   /// `prior`: share of each kind among the samples for which the probabilities hold.
   ClusterClassifier(BoostedTrees trees, std::array<Calibration, kClusterKinds> calibrations,
                     const std::array<double, kClusterKinds>& prior, const EvidenceMemory& memory,
-                    Provenance provenance);
+                    Provenance provenance, KnownShapes known = {});
 
   /// Calibrated probabilities of the kinds; their sum is 1.
   std::array<double, kClusterKinds> probabilities(const Descriptor& descriptor) const;
@@ -88,6 +89,7 @@ class ClusterClassifier {
   const std::array<double, kClusterKinds>& prior() const { return prior_; }
   const EvidenceMemory& memory() const { return memory_; }
   const Provenance& provenance() const { return provenance_; }
+  const KnownShapes& known() const { return known_; }
 
  private:
   void score(const Descriptor& descriptor, double (&out)[kClusterKinds]) const;
@@ -98,6 +100,7 @@ class ClusterClassifier {
   std::array<double, kClusterKinds> prior_;
   EvidenceMemory memory_;
   Provenance provenance_;
+  KnownShapes known_;
 };
 
 }  // namespace perception

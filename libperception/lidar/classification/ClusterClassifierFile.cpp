@@ -220,7 +220,7 @@ ClusterClassifier ClusterClassifier::parse(const std::string& text, const std::s
   top.at("format").mustBe(kFormat);
   top.at("version").mustBe(kVersion);
   top.only(Keys{"format", "version", "provenance", "features", "kinds", "memory", "prior",
-                "calibration", "base", "trees"});
+                "calibration", "known", "base", "trees"});
   readNames(top.at("features"), featureNames());
   readNames(top.at("kinds"), kClusterKindNames);
   Provenance provenance = readProvenance(top.at("provenance"));
@@ -231,12 +231,13 @@ ClusterClassifier ClusterClassifier::parse(const std::string& text, const std::s
   maps.only(kClusterKindNames);
   for (std::size_t k = 0; k < kClusterKinds; ++k)
     calibrations[k] = readCalibration(maps.at(kClusterKindNames[k]));
+  const KnownShapes known = top.has("known") ? KnownShapes::read(top.at("known")) : KnownShapes{};
   BoostedTrees trees;
   if (separate) trees = std::move(separate->trees);
   readBase(top.at("base"), trees);
   if (!separate) readTrees(top.at("trees"), trees);
   return ClusterClassifier(std::move(trees), std::move(calibrations), prior, memory,
-                           std::move(provenance));
+                           std::move(provenance), known);
 }
 
 std::string ClusterClassifier::write() const {
@@ -263,6 +264,7 @@ std::string ClusterClassifier::write() const {
                                    return numbersText(std::array{knot.raw, knot.calibrated});
                                  }),
                        k + 1 < kClusterKinds ? "," : "},");
+  if (const std::string known = known_.text(); !known.empty()) out += "\"known\":" + known + ",\n";
   out += fmt::format("\"base\":{},\n\"trees\":[\n", numbersText(trees_.base));
   for (std::size_t t = 0; t < trees_.roots.size(); ++t)
     out += treeText(trees_, t) + (t + 1 < trees_.roots.size() ? ",\n" : "\n");

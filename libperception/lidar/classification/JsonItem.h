@@ -25,6 +25,7 @@ class JsonItem {
     throw DataError(fmt::format("{}: {}: found {}, expected {}", file_,
                                 where.empty() ? "outermost value" : where, shown(), expected));
   }
+  bool has(const char* key) const { return json_.is_object() && json_.contains(key); }
   JsonItem at(const char* key) const {
     if (!json_.is_object()) fail("an object");
     const auto found = json_.find(key);

@@ -170,7 +170,7 @@ double FootprintModel::logBirthDensity(const Measurement& m, ClassId c,
     const double range = rangeOf(m, sensor);
     const double width = range * wrapAngle(m.z[kLeft] - m.z[kRight]);
     const double noise = range * range * (m.R(kLeft, kLeft) + m.R(kRight, kRight));
-    const NewbornWidth newborn(classes_, width, noise);
+    const NewbornWidth newborn(classes_, width, noise, m.view.has_value());
     per_meter = newborn.density(c);
     if (m.sides) per_meter *= newborn.gainInShape(c, boxAcross(m, sensor));
     if (m.view) per_meter *= newborn.gainOfShape(c, m.log_class);

@@ -12,8 +12,8 @@ constexpr double kWidestClutter = 10;  ///< [m] clutter is uniform in width up t
 class NewbornWidth {
  public:
   /// Borrows the classes. `width` [m]: angle between the edges times range; `noise` [m^2]: its
-  /// variance.
-  NewbornWidth(const ClassTable& classes, double width, double noise);
+  /// variance. `by_shape`: of a lidar cluster that is told by what its returns look like.
+  NewbornWidth(const ClassTable& classes, double width, double noise, bool by_shape = false);
 
   /// [1/m] of the width of the objects of a class, headings uniform.
   double density(ClassId c) const;
@@ -33,6 +33,7 @@ class NewbornWidth {
 
   const ClassTable& classes_;
   double width_, noise_;
+  double any_width_of_things_;  ///< their share
 };
 
 }  // namespace perception
