@@ -20,12 +20,14 @@ inline constexpr float kHardlyDoubted = 0.95f;
 
 /// A cluster that may be a road user.
 struct JudgedCluster {
-  std::vector<std::uint32_t> points;       ///< indices into the obstacles, ascending
-  std::array<double, kShapes> evidence{};  ///< ClusterClassifier::evidence()
-  bool alone = false;                      ///< no other return within 0.5 m
-  double phantom = 0;                      ///< [0, 1] P(phantom)
-  double looks_phantom = 0;                ///< ClusterClassifier::phantomEvidence()
-  double cause = 0;                        ///< [0, 1] that something makes phantoms there
+  std::vector<std::uint32_t> points;  ///< indices into the obstacles, ascending
+  /// ClusterClassifier::evidence(), what speaks for road users times KnownShapes::weights().
+  std::array<double, kShapes> evidence{};
+  std::array<double, kRoadUsers> known{1, 1, 1};  ///< these weights
+  bool alone = false;                             ///< no other return within 0.5 m
+  double phantom = 0;                             ///< [0, 1] P(phantom)
+  double looks_phantom = 0;                       ///< ClusterClassifier::phantomEvidence()
+  double cause = 0;                               ///< [0, 1] that something makes phantoms there
 };
 
 /// Detections of one scan, in the ego frame: for the tracker, for pictures and for the safety grid.

@@ -88,7 +88,7 @@ KnownShapes shapeExamples(const ClusterSamples& samples,
     }
     if (far.size() < kLeastRecordings) continue;
     std::sort(far.begin(), far.end());
-    const double within = far[(far.size() - 1) / 2];
+    const double within = far[far.size() - 2];
     if (!std::isfinite(within)) continue;
     shapes.of(kind) = examplesOf(pooled(geometries, geometries.size()));
     shapes.of(kind).within = within;

@@ -29,8 +29,7 @@ double at(const Probabilities& p, ClusterKind kind) { return p[static_cast<std::
 /// Least probability at which a part stands for itself, and that of a whole which is not looked
 /// into (assumed).
 constexpr double kLeastPart = 0.3, kSureWhole = 0.7;
-/// Probability of a thing or a phantom from which a whole is not looked into (assumed).
-constexpr double kSureThing = 0.98;
+constexpr double kSureThing = 0.98;  // or a phantom: a whole is not looked into (assumed)
 /// Evidence of the likeliest road user below which a cluster is surely none: with one road user
 /// in ten clusters, 1 in 66 is one (assumed).
 constexpr double kSurelyThing = -2;
@@ -38,8 +37,7 @@ constexpr double kSurelyThing = -2;
 /// Probability from which a cluster is surely a phantom, if that of every road user is below the
 /// second one (assumed).
 constexpr double kSurePhantom = 0.7, kHardlyRoadUser = 0.05;
-/// P(phantom) above which a cluster that is kept counts as suspicious: more likely one than not.
-constexpr double kSuspicious = 0.5;
+constexpr double kSuspicious = 0.5;  // P(phantom) above which a kept cluster counts as such
 /// Where the air is likely not clear, P(phantom) from which a cluster may be a surface with what is
 /// in the air about it (assumed).
 constexpr double kNotClear = 0.5, kPerhapsPhantom = 0.2;
@@ -210,7 +208,7 @@ class RoadUserCollector {
     cluster.looks_phantom = classifier_.phantomEvidence(described.probabilities);
     cluster.cause = std::max({causes.weather, causes.cloud, causes.spray});
     cluster.evidence = classifier_.evidence(p);
-    classifier_.known().weigh(described.descriptor, cluster.evidence);
+    cluster.known = classifier_.known().weights(described.descriptor, cluster.evidence);
     if (roadUser(cluster.evidence) < kSurelyThing) return;
     cluster.points = std::move(described.segment.points);
     const float isolation = described.descriptor[static_cast<std::size_t>(Feature::kIsolation)];
@@ -291,6 +289,8 @@ Judgement judgedClusters(const LidarDetections& found, const LidarCloud& cloud,
   }
   dropFragments(found, judged);
   dropLoose(found, cells, judged);
+  for (JudgedCluster& j : judged)
+    for (std::size_t k = 0; k < kRoadUsers; ++k) j.evidence[k] *= j.known[k];
   judgement.verdicts.suspicious = static_cast<std::size_t>(
       std::count_if(judged.begin(), judged.end(),
                     [](const JudgedCluster& c) { return c.phantom > kSuspicious; }));

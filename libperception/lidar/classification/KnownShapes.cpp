@@ -22,8 +22,6 @@ float leastOf(Feature f) {
     case Feature::kEdgeDistance:
     case Feature::kRoughness:
       return 0.003f;
-    case Feature::kSpread3:
-      return 0.02f;
     default:
       return 0.05f;
   }
@@ -73,9 +71,12 @@ double KnownShapes::weight(ClusterKind kind, const Descriptor& descriptor) const
   return std::clamp((kUnknownFrom - over) / (kUnknownFrom - 1), 0.0, 1.0);
 }
 
-void KnownShapes::weigh(const Descriptor& descriptor, std::array<double, kShapes>& evidence) const {
+std::array<double, kRoadUsers> KnownShapes::weights(
+    const Descriptor& descriptor, const std::array<double, kShapes>& evidence) const {
+  std::array<double, kRoadUsers> weights{};
   for (std::size_t k = 0; k < kRoadUsers; ++k)
-    if (evidence[k] > 0) evidence[k] *= weight(static_cast<ClusterKind>(k), descriptor);
+    weights[k] = evidence[k] > 0 ? weight(static_cast<ClusterKind>(k), descriptor) : 1;
+  return weights;
 }
 
 KnownShapes KnownShapes::read(const JsonItem& item) {

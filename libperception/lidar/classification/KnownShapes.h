@@ -17,10 +17,9 @@ class JsonItem;
 class KnownShapes {
  public:
   /// Logs of lengths [m] and of the roughness [-].
-  static constexpr std::array<Feature, 9> kFeaturesUsed = {
-      Feature::kLength,  Feature::kWidth,     Feature::kEdgeDistance,
-      Feature::kWidth5,  Feature::kWidth3,    Feature::kLength1,
-      Feature::kLength3, Feature::kRoughness, Feature::kSpread3};
+  static constexpr std::array<Feature, 6> kFeaturesUsed = {
+      Feature::kLength, Feature::kWidth,  Feature::kEdgeDistance,
+      Feature::kWidth5, Feature::kWidth3, Feature::kRoughness};
   using Geometry = std::array<float, kFeaturesUsed.size()>;
   static Geometry geometryOf(const Descriptor& descriptor);
 
@@ -38,8 +37,9 @@ class KnownShapes {
   /// Factor in [0, 1] of what speaks for a road user of this kind: 1 up to the distance `within`, 0
   /// from twice that on, 1 for kinds of which nothing is stored.
   double weight(ClusterKind kind, const Descriptor& descriptor) const;
-  /// Multiplies what speaks for road users (log likelihoods by kind) with their weights.
-  void weigh(const Descriptor& descriptor, std::array<double, kShapes>& evidence) const;
+  /// Of the kinds that `evidence`, log likelihoods by kind, speaks for; 1 for the others.
+  std::array<double, kRoadUsers> weights(const Descriptor& descriptor,
+                                         const std::array<double, kShapes>& evidence) const;
 
   /// JSON as of text(). Throws DataError with the place of the first fault and what was expected.
   static KnownShapes read(const JsonItem& item);

@@ -144,6 +144,9 @@ TEST(JudgedClusters, WhatIsLongAndLowIsNoVehicle) {
   };
   EXPECT_EQ(vehicles(9, 2.4), 1) << "a bus, as high as the view";
   EXPECT_EQ(vehicles(9, 1.6), 0) << "a hedge";
+  EXPECT_EQ(vehicles(6, 1.1), 0) << "a low wall";
+  EXPECT_EQ(vehicles(5, 1.1), 1) << "a low car";
+  EXPECT_EQ(vehicles(6, 1.6), 1) << "a van";
   EXPECT_EQ(vehicles(4.5, 1.6), 1) << "a car";
 }
 

@@ -29,5 +29,18 @@ TEST(NewbornWidth, WhatIsWiderThanTheLikeliestClassIsOnAverageCountsInFull) {
       << "no person is that wide";
 }
 
+TEST(NewbornWidth, AThingMayBeAWallWhereTheShapeIsTold) {
+  ClassTable classes = vehiclesAndWalkers();
+  classes.classes.emplace_back();  // a thing of 1 m
+  classes.classes.back().length = classes.classes.back().width = 1;
+  classes.classes.back().length_sigma = classes.classes.back().width_sigma = 1;
+  const auto density = [&](double width, bool by_shape, ClassId c) {
+    return NewbornWidth(classes, width, 0.01, by_shape).density(c);
+  };
+  EXPECT_NEAR(density(5, true, 2), 0.12 / kWidestClutter, 1e-6);
+  EXPECT_NEAR(density(5, false, 2), 0.001 / kWidestClutter, 1e-6);
+  EXPECT_EQ(density(5, true, 0), density(5, false, 0)) << "no vehicle has any width";
+}
+
 }  // namespace
 }  // namespace perception

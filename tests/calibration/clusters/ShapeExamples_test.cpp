@@ -1,0 +1,87 @@
+#include "libperception/calibration/clusters/ShapeExamples.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "libperception/core/math/Random.h"
+
+namespace perception {
+namespace {
+
+constexpr auto kVehicle = static_cast<std::size_t>(ClusterKind::kVehicle);
+
+/// Recordings with vehicles of any shape about that of the recording.
+struct Recordings {
+  ClusterSamples samples;
+  std::vector<std::vector<std::size_t>> of_log;
+
+  /// `offset`: of the logs of the recording's lengths.
+  void add(int vehicles, double offset = 0, double spread = 0.5) {
+    Rng rng(RngKey{3, of_log.size(), 0, 11});
+    of_log.emplace_back();
+    for (int i = 0; i < vehicles; ++i) {
+      ClusterSample s;
+      s.kind = ClusterKind::kVehicle;
+      for (const Feature f : KnownShapes::kFeaturesUsed)
+        s.descriptor[static_cast<std::size_t>(f)] =
+            static_cast<float>(std::exp(offset + spread * rng.normal()));
+      of_log.back().push_back(samples.clusters.size());
+      samples.clusters.push_back(s);
+    }
+  }
+  KnownShapes::OfKind vehicles() const { return shapeExamples(samples, of_log).of(kVehicle); }
+};
+
+TEST(ShapeExamples, WhatRecordingsHaveInCommonIsKnown) {
+  Recordings r;
+  for (int i = 0; i < 4; ++i) r.add(200);
+  const KnownShapes::OfKind known = r.vehicles();
+  EXPECT_GT(known.within, 0.2);
+  EXPECT_LT(known.within, 1.2);
+  std::size_t within = 0;
+  for (const ClusterSample& s : r.samples.clusters)
+    within += known.distance(KnownShapes::geometryOf(s.descriptor)) <= known.within;
+  EXPECT_GT(within, 9 * r.samples.clusters.size() / 10);
+}
+
+TEST(ShapeExamples, OneRecordingOfOtherThingsDoesNotWidenWhatIsKnown) {
+  Recordings r;
+  for (int i = 0; i < 4; ++i) r.add(200);
+  const double before = r.vehicles().within;
+  r.add(200, 6);
+  EXPECT_LT(r.vehicles().within, 1.5 * before);
+}
+
+TEST(ShapeExamples, SamplesThatAreAlikeAreOneExample) {
+  Recordings r;
+  for (int i = 0; i < 3; ++i) r.add(20);
+  const std::size_t before = r.vehicles().examples.size();
+  for (auto& log : r.of_log) {
+    const auto once = log;
+    log.insert(log.end(), once.begin(), once.end());
+  }
+  EXPECT_EQ(r.vehicles().examples.size(), before);
+}
+
+TEST(ShapeExamples, ThreeRecordingsHaveToShowAKindFiveTimes) {
+  Recordings r;
+  r.add(20), r.add(20);
+  EXPECT_EQ(r.vehicles().within, 0);
+  r.add(4);
+  EXPECT_EQ(r.vehicles().within, 0);
+  r.add(5);
+  EXPECT_GT(r.vehicles().within, 0);
+  EXPECT_EQ(shapeExamples(r.samples, r.of_log).of(0).within, 0) << "no pedestrian";
+}
+
+TEST(ShapeExamples, ExamplesHaveThreeDecimals) {
+  Recordings r;
+  for (int i = 0; i < 3; ++i) r.add(20);
+  for (const auto& example : r.vehicles().examples)
+    for (const float v : example)
+      EXPECT_EQ(v, static_cast<float>(std::round(static_cast<double>(v) * 1000) / 1000));
+}
+
+}  // namespace
+}  // namespace perception
