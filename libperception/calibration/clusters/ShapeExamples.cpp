@@ -37,9 +37,9 @@ double distanceOf(const Geometry& a, const Geometry& b, const Geometry& scale) {
   return std::sqrt(square / static_cast<double>(a.size()));
 }
 
-/// To three decimals: what a file holds is what was judged with.
+/// To three decimals, and no -0: what a file holds is what was judged with.
 Geometry rounded(Geometry g) {
-  for (float& v : g) v = static_cast<float>(std::round(static_cast<double>(v) * 1000) / 1000);
+  for (float& v : g) v = static_cast<float>(std::round(static_cast<double>(v) * 1000) / 1000 + 0.0);
   return g;
 }
 

@@ -75,12 +75,15 @@ TEST(ShapeExamples, ThreeRecordingsHaveToShowAKindFiveTimes) {
   EXPECT_EQ(shapeExamples(r.samples, r.of_log).of(0).within, 0) << "no pedestrian";
 }
 
-TEST(ShapeExamples, ExamplesHaveThreeDecimals) {
+TEST(ShapeExamples, ExamplesHaveThreeDecimalsAndNoNegativeZero) {
   Recordings r;
   for (int i = 0; i < 3; ++i) r.add(20);
+  r.samples.clusters[0].descriptor[static_cast<std::size_t>(Feature::kWidth)] = 0.9999f;
   for (const auto& example : r.vehicles().examples)
-    for (const float v : example)
+    for (const float v : example) {
       EXPECT_EQ(v, static_cast<float>(std::round(static_cast<double>(v) * 1000) / 1000));
+      EXPECT_FALSE(v == 0 && std::signbit(v)) << "a file would not keep it";
+    }
 }
 
 }  // namespace
