@@ -7,6 +7,7 @@
 #include <cmath>
 #include <set>
 
+#include "libperception/calibration/clusters/ShapeExamples.h"
 #include "libperception/core/Error.h"
 
 namespace perception {
@@ -227,9 +228,8 @@ StudyReport knownShapesStudy(const ClusterSamples& samples, const std::vector<Tr
   StudyReport report;
   report.title = "What clusters of lidar returns look like: known shapes";
   report.data = namesOf(logs);
-  ClusterTrainer trainer(samples, logs, 1);
   addModel(ClusterClassifier(model.trees(), model.calibrations(), model.prior(), model.memory(),
-                             model.provenance(), trainer.examples(logs.size())),
+                             model.provenance(), shapeExamples(samples, logs, logs.size())),
            report);
   return report;
 }

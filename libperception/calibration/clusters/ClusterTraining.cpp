@@ -133,14 +133,7 @@ ClusterClassifier ClusterTrainer::classifier(std::size_t without, Provenance pro
                           provenance);
   const EvidenceMemory memory = memoryOf(shape, without);
   return ClusterClassifier(shape.trees(), calibrations, prior, memory, std::move(provenance),
-                           examples(without));
-}
-
-KnownShapes ClusterTrainer::examples(std::size_t without) const {
-  std::vector<std::vector<std::size_t>> recorded;
-  for (std::size_t log = 0; log < logs_.size(); ++log)
-    if (log != without && !logs_[log].simulated) recorded.push_back(of_log_[log]);
-  return shapeExamples(samples_, recorded);
+                           shapeExamples(samples_, logs_, without));
 }
 
 /// From evidence of logs that the trees had not seen: of a road user for its own kind, of a thing

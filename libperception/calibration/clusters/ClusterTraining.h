@@ -34,9 +34,6 @@ class ClusterTrainer {
   /// P(phantom) stays as it is then: how many there are is a matter of the weather of the log.
   ClusterClassifier classifier(std::size_t without, Provenance provenance);
 
-  /// What the recordings but `without` know of shapes.
-  KnownShapes examples(std::size_t without) const;
-
   /// Samples of a log, as indices.
   const std::vector<std::size_t>& of(std::size_t log) const { return of_log_[log]; }
   std::size_t logs() const { return logs_.size(); }

@@ -28,15 +28,6 @@ Geometry deviations(const std::vector<Geometry>& all) {
   return scale;
 }
 
-double distanceOf(const Geometry& a, const Geometry& b, const Geometry& scale) {
-  double square = 0;
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    const auto d = static_cast<double>((a[i] - b[i]) / scale[i]);
-    square += d * d;
-  }
-  return std::sqrt(square / static_cast<double>(a.size()));
-}
-
 /// To three decimals, and no -0: what a file holds is what was judged with.
 Geometry rounded(Geometry g) {
   for (float& v : g) v = static_cast<float>(std::round(static_cast<double>(v) * 1000) / 1000 + 0.0);
@@ -48,7 +39,7 @@ KnownShapes::OfKind examplesOf(const std::vector<Geometry>& all) {
   known.scale = rounded(deviations(all));
   for (const Geometry& g : all)
     if (std::none_of(known.examples.begin(), known.examples.end(),
-                     [&](const Geometry& e) { return distanceOf(g, e, known.scale) < kAlike; }))
+                     [&](const Geometry& e) { return known.distance(g, e) < kAlike; }))
       known.examples.push_back(rounded(g));
   return known;
 }
@@ -64,17 +55,15 @@ std::vector<Geometry> pooled(const std::vector<std::vector<Geometry>>& of_log,
 
 }  // namespace
 
-KnownShapes shapeExamples(const ClusterSamples& samples,
-                          const std::vector<std::vector<std::size_t>>& of_log) {
+KnownShapes shapeExamples(const ClusterSamples& samples, const std::vector<TrainingLog>& logs,
+                          std::size_t without) {
   KnownShapes shapes;
   for (std::size_t kind = 0; kind < kRoadUsers; ++kind) {
-    std::vector<std::vector<Geometry>> geometries(of_log.size());
-    for (std::size_t log = 0; log < of_log.size(); ++log)
-      for (const std::size_t i : of_log[log]) {
-        const ClusterSample& s = samples.clusters[i];
-        if (s.kind && static_cast<std::size_t>(*s.kind) == kind)
-          geometries[log].push_back(KnownShapes::geometryOf(s.descriptor));
-      }
+    std::vector<std::vector<Geometry>> geometries(logs.size());
+    for (const ClusterSample& s : samples.clusters)
+      if (s.kind && static_cast<std::size_t>(*s.kind) == kind && s.log != without &&
+          !logs[s.log].simulated)
+        geometries[s.log].push_back(KnownShapes::geometryOf(s.descriptor));
     std::vector<double> far;  // of each recording, how far its samples are from the others
     for (std::size_t log = 0; log < geometries.size(); ++log) {
       if (geometries[log].size() < kLeastSamples) continue;

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <utility>
 
 #include "libperception/lidar/classification/JsonItem.h"
@@ -47,21 +48,24 @@ KnownShapes::Geometry KnownShapes::geometryOf(const Descriptor& descriptor) {
   return g;
 }
 
-double KnownShapes::OfKind::distance(const Geometry& geometry) const {
-  std::array<float, kNearest> nearest{};  // squares, ascending
-  nearest.fill(std::numeric_limits<float>::infinity());
-  for (const Geometry& example : examples) {
-    float square = 0;
-    for (std::size_t i = 0; i < geometry.size(); ++i) {
-      const float d = (geometry[i] - example[i]) / scale[i];
-      square += d * d;
-    }
-    for (float& n : nearest)
-      if (square < n) std::swap(square, n);
+double KnownShapes::OfKind::distance(const Geometry& a, const Geometry& b) const {
+  float square = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    const float d = (a[i] - b[i]) / scale[i];
+    square += d * d;
   }
-  double sum = 0;
-  for (const float n : nearest) sum += std::sqrt(static_cast<double>(n));
-  return sum / static_cast<double>(kNearest) / std::sqrt(static_cast<double>(geometry.size()));
+  return std::sqrt(static_cast<double>(square) / static_cast<double>(a.size()));
+}
+
+double KnownShapes::OfKind::distance(const Geometry& geometry) const {
+  std::array<double, kNearest> nearest{};  // ascending
+  nearest.fill(std::numeric_limits<double>::infinity());
+  for (const Geometry& example : examples) {
+    double d = distance(geometry, example);
+    for (double& n : nearest)
+      if (d < n) std::swap(d, n);
+  }
+  return std::accumulate(nearest.begin(), nearest.end(), 0.0) / static_cast<double>(kNearest);
 }
 
 double KnownShapes::weight(ClusterKind kind, const Descriptor& descriptor) const {

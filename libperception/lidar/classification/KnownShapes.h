@@ -29,8 +29,9 @@ class KnownShapes {
     Geometry scale{};   ///< deviation of each feature over the examples, > 0
     std::vector<Geometry> examples;
 
-    /// Mean distance to the three nearest examples, in deviations by feature (root mean square);
-    /// infinite with fewer than three.
+    /// Of two geometries, in deviations by feature (root mean square).
+    double distance(const Geometry& a, const Geometry& b) const;
+    /// Mean of those to the three nearest examples; infinite with fewer than three.
     double distance(const Geometry& geometry) const;
   };
 

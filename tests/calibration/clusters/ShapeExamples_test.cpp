@@ -14,23 +14,24 @@ constexpr auto kVehicle = static_cast<std::size_t>(ClusterKind::kVehicle);
 /// Recordings with vehicles of any shape about that of the recording.
 struct Recordings {
   ClusterSamples samples;
-  std::vector<std::vector<std::size_t>> of_log;
+  std::vector<TrainingLog> logs;
 
   /// `offset`: of the logs of the recording's lengths.
   void add(int vehicles, double offset = 0, double spread = 0.5) {
-    Rng rng(RngKey{3, of_log.size(), 0, 11});
-    of_log.emplace_back();
+    Rng rng(RngKey{3, logs.size(), 0, 11});
     for (int i = 0; i < vehicles; ++i) {
       ClusterSample s;
-      s.kind = ClusterKind::kVehicle;
+      s.log = logs.size(), s.kind = ClusterKind::kVehicle;
       for (const Feature f : KnownShapes::kFeaturesUsed)
         s.descriptor[static_cast<std::size_t>(f)] =
             static_cast<float>(std::exp(offset + spread * rng.normal()));
-      of_log.back().push_back(samples.clusters.size());
       samples.clusters.push_back(s);
     }
+    logs.push_back({"a recording", false});
   }
-  KnownShapes::OfKind vehicles() const { return shapeExamples(samples, of_log).of(kVehicle); }
+  KnownShapes::OfKind vehicles() const {
+    return shapeExamples(samples, logs, logs.size()).of(kVehicle);
+  }
 };
 
 TEST(ShapeExamples, WhatRecordingsHaveInCommonIsKnown) {
@@ -57,10 +58,8 @@ TEST(ShapeExamples, SamplesThatAreAlikeAreOneExample) {
   Recordings r;
   for (int i = 0; i < 3; ++i) r.add(20);
   const std::size_t before = r.vehicles().examples.size();
-  for (auto& log : r.of_log) {
-    const auto once = log;
-    log.insert(log.end(), once.begin(), once.end());
-  }
+  const std::vector<ClusterSample> once = r.samples.clusters;
+  r.samples.clusters.insert(r.samples.clusters.end(), once.begin(), once.end());
   EXPECT_EQ(r.vehicles().examples.size(), before);
 }
 
@@ -72,7 +71,10 @@ TEST(ShapeExamples, ThreeRecordingsHaveToShowAKindFiveTimes) {
   EXPECT_EQ(r.vehicles().within, 0);
   r.add(5);
   EXPECT_GT(r.vehicles().within, 0);
-  EXPECT_EQ(shapeExamples(r.samples, r.of_log).of(0).within, 0) << "no pedestrian";
+  EXPECT_EQ(shapeExamples(r.samples, r.logs, 3).of(0).within, 0) << "no pedestrian";
+  EXPECT_EQ(shapeExamples(r.samples, r.logs, 0).of(kVehicle).within, 0) << "one is left out";
+  r.logs[1].simulated = true;
+  EXPECT_EQ(r.vehicles().within, 0);
 }
 
 TEST(ShapeExamples, ExamplesHaveThreeDecimalsAndNoNegativeZero) {
