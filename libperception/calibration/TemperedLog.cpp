@@ -19,6 +19,7 @@ class TemperedModel final : public ForwardedModel {
   double labelExponent() const override { return exponents_.label; }
   double detectionExponent() const override { return exponents_.detection; }
   double innovationShare() const override { return 1; }
+  double aloneInnovationShare() const override { return 1; }
   const EvidenceMemory* evidenceMemory() const override { return nullptr; }
   const EvidenceMemory* lookMemory() const override { return nullptr; }
 

@@ -65,6 +65,8 @@ void RadarModelParams::visit(ParamVisitor& v) {
          "factor of P_D for objects that a lidar reports as occluded");
   v.real("innovation_share", innovation_share, {1e-3, 1}, "",
          "of [filter] kinematic_exponent: range, bearing and rate as evidence of the class");
+  v.real("alone_innovation_share", alone_innovation_share, {1e-3, 1}, "",
+         "innovation_share for objects that no shape of a lidar's cluster has told");
   v.expert();
   v.real(
       "min_birth_speed", min_birth_speed, {0, 50}, "m/s",

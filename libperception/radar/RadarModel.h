@@ -31,6 +31,8 @@ struct RadarModelParams {
   /// the errors of one object's returns repeat, and every return of a standing object says again
   /// that it stands.
   double innovation_share = 1;
+  /// The same for objects that no lidar or image detector has told by shape or label.
+  double alone_innovation_share = 1;
 
   void visit(ParamVisitor& v);
 };
@@ -64,6 +66,7 @@ class RadarModel final : public MeasurementModel {
     return detection_model().params().detection_exponent;
   }
   double innovationShare() const override { return params_.innovation_share; }
+  double aloneInnovationShare() const override { return params_.alone_innovation_share; }
   double logLabelLikelihood(int, ClassId) const override { return 0; }  ///< radars give no labels
   double logLabelClutter(int) const override { return 0; }
   double logClutterDensity(const Measurement& m, const SensorState& sensor) const override;

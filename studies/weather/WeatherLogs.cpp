@@ -108,7 +108,7 @@ SimulatedWeatherParams precipitationOf(WeatherType type, double mm_h,
 }
 
 std::vector<WeatherRow> weatherOf(const WeatherLog& log, const SimulatedWeatherParams* weather,
-                                  std::uint64_t seed) {
+                                  std::uint64_t seed, double until) {
   registerPerceptionClasses();
   const Source source = log.isScenario()     ? playedScenario(log.log, weather, seed)
                         : weather != nullptr ? weatheredLog(log.log, *weather, seed)
@@ -122,8 +122,12 @@ std::vector<WeatherRow> weatherOf(const WeatherLog& log, const SimulatedWeatherP
     while (pipeline.next(end)) continue;
     for (WeatherRow& row : pipeline.takeWeather()) rows.push_back(std::move(row));
   };
+  std::optional<Stamp> first;
   while (const auto observation = source()) {
     stopIfAsked();
+    const auto stamp = toStamp(observation->timestamp);
+    if (!first) first = stamp;
+    if (stamp && *stamp - *first > until) break;
     pipeline.add(*observation);
     take(false);
   }

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <memory>
 #include <string>
 #include <vector>
@@ -28,9 +29,10 @@ struct WeatherLog {
 SimulatedWeatherParams precipitationOf(WeatherType type, double mm_h,
                                        SimulatedWeatherParams::Precipitation generator);
 
-/// The weather by each scan of a log, as it is or through simulated weather.
-/// Throws DataError where no lidar's returns are weighed.
+/// The weather by each scan of a log, as it is or through simulated weather; of its first `until`
+/// [s] alone. Throws DataError where no lidar's returns are weighed.
 std::vector<WeatherRow> weatherOf(const WeatherLog& log, const SimulatedWeatherParams* weather,
-                                  std::uint64_t seed);
+                                  std::uint64_t seed,
+                                  double until = std::numeric_limits<double>::infinity());
 
 }  // namespace perception

@@ -69,7 +69,8 @@ ScanTerms::ScanTerms(const MeasurementScan& s, const FilterModel& m)
       gates(Gates::of(m.params.gate_probability)),
       label_exponent(s.model->labelExponent()),
       detection_exponent(s.model->lookMemory() ? 0 : s.model->detectionExponent()),
-      kinematic_exponent(m.params.kinematic_exponent * s.model->innovationShare()),
+      kinematic_exponent_(m.params.kinematic_exponent * s.model->innovationShare()),
+      alone_kinematic_exponent_(m.params.kinematic_exponent * s.model->aloneInnovationShare()),
       classes_(static_cast<std::size_t>(m.classes.size())) {
   for (const ObjectClass& c : model.classes.classes) log_prior.push_back(std::log(c.prior));
   labels_.reserve(scan.measurements.size() * classes_);
@@ -92,7 +93,11 @@ double visibilityOf(const Track& track, const MeasurementScan& scan, const Filte
 
 PairTerms::PairTerms(const Track& track, const ClassValues& detection, std::size_t measurement,
                      const ScanTerms& terms, PairLikelihood& pair)
-    : track_(track), terms_(terms), m_(terms.scan.measurements[measurement]), pair_(pair) {
+    : track_(track),
+      terms_(terms),
+      m_(terms.scan.measurements[measurement]),
+      pair_(pair),
+      kinematic_exponent_(terms.kinematicExponent(track)) {
   if (auto look = weighedLookOf(track, m_, terms.scan, detection, terms.model.classes))
     evidence_.emplace(track, std::move(*look), terms.scan, terms.model.params.class_epsilon);
   const std::size_t classes = track.bank.size();
@@ -118,7 +123,7 @@ void PairTerms::add(std::size_t j, const Density& density, double log_detection)
       density.log_density + terms_.labelAndScore(k, j) + log_detection + heading;
   log_density_[j] = density.log_density;
   pair_.log_class_evidence[j] =
-      terms_.kinematic_exponent * density.log_density +
+      kinematic_exponent_ * density.log_density +
       (evidence_ ? evidence_->added(j) : terms_.label_exponent * terms_.label(k, j)) +
       terms_.detection_exponent * log_detection;
   mixture_[j] = track_.log_class[j] + pair_.log_by_class[j];
@@ -181,12 +186,12 @@ void PairTerms::weighMotions() {
     along = std::max(along, own + logGoesAlong(j));
     if (terms_.model.classes[static_cast<ClassId>(j)].shape != ObjectShape::kVehicle) continue;
     moving = std::max(moving, own);
-    pair_.log_class_evidence[j] += terms_.kinematic_exponent * stands.gain(still - own);
+    pair_.log_class_evidence[j] += kinematic_exponent_ * stands.gain(still - own);
   }
   if (moving > kMinusInfinity) pair_.stands = stands.posterior(still - moving);
   constexpr double kStands = 1;  // [m/s] of the sensor's vehicle
   if (along == kMinusInfinity || terms_.scan.state.ego.velocity.norm() < kStands) return;
-  pair_.log_class_evidence[thing] += terms_.kinematic_exponent * goes.gain(along - still);
+  pair_.log_class_evidence[thing] += kinematic_exponent_ * goes.gain(along - still);
   pair_.goes_along = goes.posterior(along - still);
 }
 

@@ -27,13 +27,19 @@ class ScanTerms {
   const MeasurementScan& scan;
   const FilterModel& model;
   const Gates& gates;
-  const double label_exponent, detection_exponent, kinematic_exponent;
+  /// Exponent of the track's innovations as evidence of its class.
+  double kinematicExponent(const Track& track) const {
+    return track.evidence.empty() ? alone_kinematic_exponent_ : kinematic_exponent_;
+  }
+
+  const double label_exponent, detection_exponent;
   std::vector<double> log_prior;  ///< by class
 
  private:
   struct Labels {
     double label, label_and_score;
   };
+  const double kinematic_exponent_, alone_kinematic_exponent_;
   std::size_t classes_;
   std::vector<Labels> labels_;
   const PositionOnlyModel* place_ = nullptr;
@@ -62,6 +68,7 @@ class PairTerms {
   const ScanTerms& terms_;
   const Measurement& m_;
   PairLikelihood& pair_;
+  const double kinematic_exponent_;
   std::optional<RepeatedEvidence> evidence_;
   ClassValues mixture_;
   ClassValues log_density_;  // by class; -inf: none

@@ -39,6 +39,7 @@ class ForwardedModel : public MeasurementModel {
   double labelExponent() const override { return model_->labelExponent(); }
   double detectionExponent() const override { return model_->detectionExponent(); }
   double innovationShare() const override { return model_->innovationShare(); }
+  double aloneInnovationShare() const override { return model_->aloneInnovationShare(); }
   const EvidenceMemory* evidenceMemory() const override { return model_->evidenceMemory(); }
   const EvidenceMemory* lookMemory() const override { return model_->lookMemory(); }
   double logLabelClutter(int label) const override { return model_->logLabelClutter(label); }

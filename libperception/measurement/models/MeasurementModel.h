@@ -106,6 +106,9 @@ class MeasurementModel {
   /// Factor in (0, 1] by which [filter] kinematic_exponent is multiplied. It is below 1 if the
   /// innovations depend on a size that Measurement::log_class has already used as evidence.
   virtual double innovationShare() const { return 1; }
+  /// The same for objects of which no sensor has evidence that repeats (Track::evidence), so that
+  /// their motion tells most.
+  virtual double aloneInnovationShare() const { return innovationShare(); }
   /// How the errors of Measurement::log_class repeat from view to view; null if they do not. If it
   /// is not null, it replaces labelExponent().
   virtual const EvidenceMemory* evidenceMemory() const { return nullptr; }

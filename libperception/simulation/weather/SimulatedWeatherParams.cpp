@@ -17,6 +17,10 @@ void SimulatedWeatherParams::visit(ParamVisitor& v) {
   v.choiceOf("precipitation", precipitation, kPrecipitations,
              "lidar returns of rain and snow: by a measured law, of flakes by their sizes, or drop "
              "by drop");
+  v.real("beam_divergence_mrad", beam_divergence_mrad, {0.1, 20}, "mrad",
+         "full angle of a lidar's beam, for drops and flakes one by one");
+  v.real("flake_reflectivity", flake_reflectivity, {0.01, 1}, "-",
+         "of a snow flake at the lidar's wavelength, for flakes one by one");
   v.real("rain_mm_h", rain_mm_h, {0, 200}, "mm/h", "rain; 50 is a downpour");
   v.real("snow_mm_h", snow_mm_h, {0, 20}, "mm/h", "snowfall, as water; from 2.5 on it is heavy");
   v.real("fog_mor", fog_mor, {0, 20000}, "m", "range of sight in fog; 0: none");

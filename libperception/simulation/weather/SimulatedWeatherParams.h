@@ -15,6 +15,8 @@ struct SimulatedWeatherParams {
   /// single drops and flakes, the second generator for validation.
   enum class Precipitation { kMeasured, kSizes, kParticles };
   Precipitation precipitation = Precipitation::kMeasured;
+  /// Of the second generator's lidars (ParticleReceiver).
+  double beam_divergence_mrad = 3, flake_reflectivity = 0.9;
   double rain_mm_h = 0;         ///< [mm/h] method.md 9.1
   double snow_mm_h = 0;         ///< [mm/h] of water, method.md 9.2
   double fog_mor = 0;           ///< [m] meteorological optical range, method.md 9.3; 0: no fog

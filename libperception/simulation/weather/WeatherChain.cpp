@@ -30,12 +30,13 @@ void addPrecipitation(const SimulatedWeatherParams& p, std::uint64_t seed,
   using Precipitation = SimulatedWeatherParams::Precipitation;
   const bool particles = p.precipitation == Precipitation::kParticles,
              by_sizes = p.precipitation == Precipitation::kSizes;
+  const ParticleReceiver receiver = {1e-3 * p.beam_divergence_mrad, p.flake_reflectivity};
   if (p.rain_mm_h > 0 && particles)
-    phenomena.push_back(std::make_unique<RainDrops>(p.rain_mm_h, seed));
+    phenomena.push_back(std::make_unique<RainDrops>(p.rain_mm_h, seed, receiver));
   else if (p.rain_mm_h > 0)
     phenomena.push_back(std::make_unique<Rain>(p.rain_mm_h, seed));
   if (p.snow_mm_h > 0 && particles)
-    phenomena.push_back(std::make_unique<SnowFlakes>(p.snow_mm_h, seed));
+    phenomena.push_back(std::make_unique<SnowFlakes>(p.snow_mm_h, seed, receiver));
   else if (p.snow_mm_h > 0)
     phenomena.push_back(std::make_unique<Snow>(p.snow_mm_h, seed, by_sizes));
 }

@@ -20,12 +20,15 @@ constexpr std::size_t kRates = 97;
 // instrument and scene.
 constexpr double kRainFactor = 2.5, kDropsFactor = 4, kKnownDropsFactor = 2.5, kSnowFactor = 4;
 // Of flakes by their brightness: divergence and reflectivity known to a tenth each, which together
-// are 1.14 in the diameter.
-constexpr double kBrightFactor = 1.3;
+// are 1.14 in the diameter and 1.32 in the rate, and what the scene adds.
+constexpr double kBrightFactor = 1.35;
 // [mm/h] a law that says more was made for another instrument: then the flakes' brightness tells,
 // or only limits are known (assumed; heavy snowfall is 2.5, method.md 9.9).
 constexpr double kMostSnow = 12, kLeastSnow = 0.3;
 constexpr double kFlakeReflectivity = 0.9;  // [hahner2022], method.md 9.2
+// The mean echo of flakes of mean diameter D from 1.5 to 2.5 m, over that of one in the middle of
+// its beam, is kStrongest - kCovered D / divergence (drawn a million times, method.md 9.10).
+constexpr double kStrongest = 1.092, kCovered = 0.285;  // -, [1/m]
 // Visibility: reflectivities of usual surfaces and of what is just seen (assumed).
 constexpr double kUsual = 0.2, kDull = 0.05, kBright = 0.8;
 
@@ -90,7 +93,11 @@ Estimate PrecipitationRate::snow(const AirShares& shares) const {
   const double by_law = shares.flakes / kSnowLaw;
   if (by_law <= kMostSnow) return within(by_law, kSnowFactor);
   if (shares.brightness <= 0) return {std::sqrt(kLeastSnow * by_law), kLeastSnow, by_law};
-  const double diameter = 1e3 * kDivergence * shares.brightness / kFlakeReflectivity;  // [mm]
+  // The smaller root of that echo.
+  const double echo = shares.brightness / kFlakeReflectivity;  // [m]
+  const double root = std::max(0.0, kStrongest * kStrongest - 4 * kCovered * echo);
+  const double diameter =
+      1e3 * kDivergence * (kStrongest - std::sqrt(root)) / (2 * kCovered);  // [mm]
   return within(std::pow(2.55 * diameter, 1 / 0.48), kBrightFactor);
 }
 

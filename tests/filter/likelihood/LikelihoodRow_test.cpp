@@ -5,6 +5,7 @@
 #include "libperception/core/math/Random.h"
 #include "libperception/filter/state/ClassFilterMotion.h"
 #include "libperception/filter/update/Update.h"
+#include "libperception/measurement/models/ForwardedModel.h"
 #include "tests/support/FilterWorld.h"
 
 namespace perception {
@@ -201,6 +202,43 @@ TEST(PairTerms, WhatIsNotToldByItsShapeIsToldByItsMotion) {
 TEST(PairTerms, WhatGoesAlongInTheOwnWayIsAVehicleAhead) {
   EXPECT_LT(SeenAlong(3, 0, true).pThing(), 1e-3);
   EXPECT_LT(SeenAlong(3, -1.5, true).pThing(), 1e-3);
+}
+
+/// A sensor whose innovations say less of what another one has told by its shape.
+class RepeatingModel final : public ForwardedModel {
+ public:
+  using ForwardedModel::ForwardedModel;
+  double innovationShare() const override { return 0.2; }
+  double aloneInnovationShare() const override { return 0.5; }
+};
+
+TEST(PairTerms, TheMotionOfWhatNoShapeHasToldSaysMoreOfItsClass) {
+  FilterModel model = test::exactModel(test::linearClasses());
+  Track track;
+  for (int j = 0; j < 2; ++j) {
+    ClassFilter f;
+    f.x << 10, j, 0, 0;
+    f.P.topLeftCorner<2, 2>() = Matrix2::Identity();
+    track.bank.push_back(f);
+    track.log_class.push_back(std::log(0.5));
+  }
+  PositionModel::Params sensor = test::linearSensor();
+  sensor.classes[1] = sensor.classes[0];  // the place alone tells the class
+  MeasurementScan scan;
+  scan.model = std::make_shared<const RepeatingModel>(std::make_shared<PositionModel>(sensor));
+  Measurement m;
+  m.position = m.z = Vector2(10, 0);
+  m.R = 0.01 * Matrix2::Identity();
+  m.seen = 3;
+  scan.measurements = {m};
+  const auto told = [&] {
+    const auto pair = likelihoodTable({track}, scan, model).tracks[0].pairs.at(0);
+    return pair.log_class_evidence[0] - pair.log_class_evidence[1];
+  };
+  const double alone = told();
+  track.evidence.emplace_back();  // of a lidar
+  EXPECT_GT(alone, 0.1);
+  EXPECT_NEAR(told() / alone, 0.2 / 0.5, 1e-9);
 }
 
 }  // namespace

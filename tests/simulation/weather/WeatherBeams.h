@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "libperception/simulation/SimulatedWeather.h"
+#include "libperception/simulation/weather/particles/SnowFlakes.h"
 #include "libperception/simulation/world/Scenario.h"
 #include "libperception/simulation/world/World.h"
 #include "tests/simulation/SceneText.h"
@@ -49,6 +50,19 @@ inline void scanSky(SimulatedWeather& weather, int scans,
       }
     }
   }
+}
+
+/// Mean of intensity times range [m] of the strongest echoes from 1.5 to 2.5 m.
+inline double brightnessOf(SnowFlakes snow) {
+  double sum = 0, count = 0;
+  scanSky(snow, 8, [&](int, int, const LidarPulse& pulse) {
+    const LidarPulse::Scatterer* strongest = nullptr;
+    for (const auto& flake : pulse.scatterers)
+      if (strongest == nullptr || flake.power > strongest->power) strongest = &flake;
+    if (strongest == nullptr || strongest->range >= 2.5) return;
+    ++count, sum += strongest->power * std::pow(strongest->range, 3);
+  });
+  return sum / count;
 }
 
 /// Largest difference between the empirical distribution of logs and a normal one, times sqrt(n);

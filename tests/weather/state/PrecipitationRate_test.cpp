@@ -4,6 +4,8 @@
 
 #include <cmath>
 
+#include "tests/simulation/weather/WeatherBeams.h"
+
 namespace perception {
 namespace {
 
@@ -65,13 +67,21 @@ TEST(PrecipitationRate, MoreFlakesThanTheLawKnowsLeaveLimitsAlone) {
 }
 
 // [gunn1958] at 2 mm/h: flakes of 1 / 2.55 2^0.48 = 0.547 mm in the mean, which fill 0.547 mm / (3
-// mrad r) of the beam and send back 0.9 of that.
+// mrad r) of the beam and send back 0.9 of that, times 1.092 less 0.285 times 0.547 / 3.
 TEST(PrecipitationRate, WhereEveryBeamMeetsFlakesTheirBrightnessTellsTheRate) {
   const PrecipitationRate rates;
-  const Estimate snow = rates.snow(flakes(0.5, 0.9 * 0.547e-3 / 0.003));
+  const Estimate snow = rates.snow(flakes(0.5, 0.9 * 0.1823 * (1.092 - 0.285 * 0.1823)));
   EXPECT_NEAR(snow.value, 2, 0.01);
   EXPECT_LT(snow.high, 2 * snow.value) << "the share's limits are wider";
   EXPECT_GT(rates.snow(flakes(0.5, 0.3)).value, snow.value);
+}
+
+TEST(PrecipitationRate, TheBrightnessOfSimulatedFlakesGivesTheRateBack) {
+  for (const double mm_h : {0.5, 1.0, 2.5, 5.0}) {
+    AirShares shares;
+    shares.flakes = 1, shares.brightness = test::brightnessOf(SnowFlakes(mm_h, 1));
+    EXPECT_NEAR(PrecipitationRate().snow(shares).value / mm_h, 1, 0.06) << mm_h;
+  }
 }
 
 TEST(PrecipitationRate, VisibilityIsThatInWhichASurfaceIsJustReceived) {

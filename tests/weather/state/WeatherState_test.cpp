@@ -86,8 +86,8 @@ TEST(WeatherState, FlakesInEveryBeamAreJudgedByTheirBrightness) {
     }
     return after(census, 10).snow_mm_h.value;
   };
-  EXPECT_NEAR(snow(0.118), 1, 0.02);
-  EXPECT_NEAR(snow(0.228), 4, 0.1);
+  EXPECT_NEAR(snow(0.124), 1, 0.02);
+  EXPECT_NEAR(snow(0.233), 4, 0.1);
 }
 
 TEST(WeatherState, ManyReturnsUpToTenMetersAreSnow) {

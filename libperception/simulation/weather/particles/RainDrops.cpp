@@ -5,7 +5,6 @@
 
 #include "libperception/core/math/Angle.h"
 #include "libperception/simulation/weather/Beam.h"
-#include "libperception/simulation/weather/particles/ParticleReceiver.h"
 
 namespace perception {
 namespace {
@@ -23,24 +22,25 @@ double reflectance() {
 }
 
 // Echo of a drop of diameter [m] in the unit of the lidar equation, without extinction.
-double echoOfDrop(double diameter, double range) {
-  const double filled = std::min(1.0, diameter / Receiver::beamWidth(range));
+double echoOfDrop(double diameter, double range, const Receiver& receiver) {
+  const double filled = std::min(1.0, diameter / receiver.beamWidth(range));
   return reflectance() * filled * filled / (range * range);
 }
 
 // Where the largest drop is at the threshold.
-double reachOfDrops() {
+double reachOfDrops(const Receiver& receiver) {
   const double strength = reflectance() / Receiver::kWeakest;
-  return std::sqrt(std::sqrt(strength) * 1e-3 * kLargestDrop / Receiver::kDivergence);
+  return std::sqrt(std::sqrt(strength) * 1e-3 * kLargestDrop / receiver.divergence);
 }
 
 }  // namespace
 
-RainDrops::RainDrops(double mm_h, std::uint64_t seed)
+RainDrops::RainDrops(double mm_h, std::uint64_t seed, const ParticleReceiver& receiver)
     : Rain(mm_h, seed),
+      receiver_(receiver),
       sizes_(marshallPalmer(mm_h)),
       per_m3_(sizes_.number * std::exp(-sizes_.slope * kSmallestDrop) / sizes_.slope),
-      reach_(reachOfDrops()),
+      reach_(reachOfDrops(receiver)),
       opacity_(rainExtinction(mm_h)) {}
 
 // Drops beyond the reach, or below the threshold, are not received whatever is behind them; they
@@ -49,14 +49,14 @@ void RainDrops::alter(const SensorParams&, LidarPulse& pulse, Rng& rng) const {
   attenuate(pulse, opacity_);
   const double far = std::min(openRange(pulse), reach_);
   if (far <= Receiver::kNearest) return;
-  const double radius = Receiver::beamWidth(far) / 2;
+  const double radius = receiver_.beamWidth(far) / 2;
   const int drops = rng.poisson(per_m3_ * kPi / 3 * far * radius * radius);
   for (int k = 0; k < drops; ++k) {
     LidarPulse::Scatterer drop;
     drop.range = far * std::cbrt(rng.uniform());
     const double diameter = 1e-3 * (kSmallestDrop + rng.exponential(1 / sizes_.slope));
     if (drop.range < Receiver::kNearest) continue;
-    drop.power = echoOfDrop(diameter, drop.range) * std::exp(-2 * opacity_ * drop.range);
+    drop.power = echoOfDrop(diameter, drop.range, receiver_) * std::exp(-2 * opacity_ * drop.range);
     if (drop.power < Receiver::kWeakest) continue;
     drop.phantom = Phantom::kRain;
     pulse.scatterers.push_back(drop);

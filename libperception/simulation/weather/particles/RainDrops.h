@@ -1,4 +1,5 @@
 #pragma once
+#include "libperception/simulation/weather/particles/ParticleReceiver.h"
 #include "libperception/simulation/weather/particles/Precipitation.h"
 #include "libperception/simulation/weather/particles/Rain.h"
 
@@ -9,12 +10,13 @@ namespace perception {
 /// own detection threshold for drops (ParticleReceiver).
 class RainDrops final : public Rain {
  public:
-  explicit RainDrops(double mm_h, std::uint64_t seed = 0);
+  explicit RainDrops(double mm_h, std::uint64_t seed = 0, const ParticleReceiver& receiver = {});
 
   using Rain::alter;
   void alter(const SensorParams&, LidarPulse& pulse, Rng& rng) const override;
 
  private:
+  ParticleReceiver receiver_;
   SizeDistribution sizes_;
   double per_m3_;   // drops of the smallest diameter and larger
   double reach_;    // [m] beyond it no drop is received

@@ -5,7 +5,6 @@
 
 #include "libperception/core/math/Angle.h"
 #include "libperception/simulation/weather/Beam.h"
-#include "libperception/simulation/weather/particles/ParticleReceiver.h"
 #include "libperception/simulation/weather/particles/Precipitation.h"
 
 namespace perception {
@@ -13,7 +12,6 @@ namespace {
 
 using Receiver = ParticleReceiver;
 
-constexpr double kFlakeReflectivity = 0.9;        // of a flake [hahner2022]
 constexpr double kFlakePulse = 0.299792458 * 10;  // [m] c times 10 ns [hahner2022]
 constexpr double kLargestOfMean = 7;  // diameter up to which flakes set the reach: 999 of 1000
 
@@ -27,9 +25,10 @@ struct Flake {
 // Share of the volume of air (and of any plane in it) that flakes fill [hahner2022].
 double occupancy(double mm_h) { return mm_h / (3.6e6 * kFlakeDensity * kFlakeSpeed); }
 
-double reachOf(double mean_diameter) {
+double reachOf(double mean_diameter, const Receiver& receiver) {
   const double widest = kLargestOfMean * mean_diameter;
-  return std::cbrt(kFlakeReflectivity * widest / (Receiver::kDivergence * Receiver::kWeakest));
+  return std::cbrt(receiver.flake_reflectivity * widest /
+                   (receiver.divergence * Receiver::kWeakest));
 }
 
 /// The part of [0, 1] that nearer flakes shade, as disjoint intervals.
@@ -74,19 +73,20 @@ double peakAt(const std::vector<Flake>& flakes, std::size_t k) {
 
 // The plane holds as many flakes as fill the occupancy: the mean area of a disk whose diameter is
 // exponential of mean d is pi/2 d^2.
-SnowFlakes::SnowFlakes(double mm_h, std::uint64_t seed)
+SnowFlakes::SnowFlakes(double mm_h, std::uint64_t seed, const ParticleReceiver& receiver)
     : Snow(mm_h, seed),
+      receiver_(receiver),
       diameter_(1e-3 / gunnMarshall(mm_h).slope),
       per_m2_(occupancy(mm_h) / (kPi / 2 * diameter_ * diameter_)),
-      reach_(reachOf(diameter_)) {}
+      reach_(reachOf(diameter_, receiver)) {}
 
 void SnowFlakes::alter(const SensorParams&, LidarPulse& pulse, Rng& rng) const {
   const double open = openRange(pulse), far = std::min(open, reach_);
   std::vector<Flake> flakes(
-      static_cast<std::size_t>(rng.poisson(per_m2_ * far * Receiver::beamWidth(far) / 2)));
+      static_cast<std::size_t>(rng.poisson(per_m2_ * far * receiver_.beamWidth(far) / 2)));
   for (Flake& flake : flakes) {
     flake.range = far * std::sqrt(rng.uniform());
-    const double width = rng.exponential(diameter_) / Receiver::beamWidth(flake.range);
+    const double width = rng.exponential(diameter_) / receiver_.beamWidth(flake.range);
     const double middle = rng.uniform();
     flake.from = std::max(0.0, middle - width / 2), flake.to = std::min(1.0, middle + width / 2);
   }
@@ -97,7 +97,7 @@ void SnowFlakes::alter(const SensorParams&, LidarPulse& pulse, Rng& rng) const {
     const double seen = shade.cover(flake.from, flake.to);
     flake.power = flake.range < Receiver::kNearest
                       ? 0
-                      : kFlakeReflectivity * seen / (flake.range * flake.range);
+                      : receiver_.flake_reflectivity * seen / (flake.range * flake.range);
   }
   // What is behind keeps the open part of the beam; beyond the reach flakes shade by their mean.
   pulse.reflectivity *= 1 - shade.covered();

@@ -1,4 +1,5 @@
 #pragma once
+#include "libperception/simulation/weather/particles/ParticleReceiver.h"
 #include "libperception/simulation/weather/particles/Snow.h"
 
 namespace perception {
@@ -9,13 +10,14 @@ namespace perception {
 /// threshold for flakes (ParticleReceiver).
 class SnowFlakes final : public Snow {
  public:
-  SnowFlakes(double mm_h, std::uint64_t seed);
+  SnowFlakes(double mm_h, std::uint64_t seed, const ParticleReceiver& receiver = {});
 
   using Snow::alter;
   void advance(const World&, const SensorParams&, double) override {}
   void alter(const SensorParams&, LidarPulse& pulse, Rng& rng) const override;
 
  private:
+  ParticleReceiver receiver_;
   double diameter_;  // [m] mean
   double per_m2_;    // flakes in the plane of a scan line
   double reach_;     // [m] up to which flakes are drawn

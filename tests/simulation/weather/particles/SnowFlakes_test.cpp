@@ -67,5 +67,11 @@ TEST(SnowFlakes, EchoesWithinAPulseAddUp) {
   EXPECT_GT(most, 0.9);
 }
 
+TEST(SnowFlakes, AreDimmerInAWiderBeamAndWhereTheyReflectLess) {
+  const double usual = test::brightnessOf(SnowFlakes(1, 1));
+  EXPECT_NEAR(test::brightnessOf(SnowFlakes(1, 1, {0.006, 0.9})) / usual, 0.5, 0.05);
+  EXPECT_NEAR(test::brightnessOf(SnowFlakes(1, 1, {0.003, 0.45})) / usual, 0.5, 0.05);
+}
+
 }  // namespace
 }  // namespace perception
