@@ -101,7 +101,7 @@ std::set<std::uint64_t> SceneFromPosterior::keepOnly(
 SceneObject SceneFromPosterior::objectOf(const Track& track) {
   SceneObject o;
   o.id = numberOf(track.id);
-  o.class_probability = classProbabilities(track);
+  o.class_probability = classProbabilities(track, model_.classes);
   o.class_id = track.likeliestClass();
   const auto best = static_cast<std::size_t>(o.class_id);
   o.classified = o.class_probability[best] >= params_.classified_at;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <numeric>
 #include <utility>
 
@@ -12,6 +13,12 @@ namespace perception {
 ClassId Track::likeliestClass() const {
   return static_cast<ClassId>(std::max_element(log_class.begin(), log_class.end()) -
                               log_class.begin());
+}
+
+double Track::shareOfEvidence() const {
+  static const double k = getenv("FREE") ? atof(getenv("FREE")) : 1;
+  const double seen = k + std::accumulate(hits.begin(), hits.end(), 0);
+  return seen / (seen + missed);
 }
 
 TrackList::TrackList(TrackTable tracks) : places_(tracks.size()) {
@@ -41,6 +48,20 @@ std::vector<double> classProbabilities(const Track& track) {
   std::vector<double> p(track.log_class.size());
   std::transform(track.log_class.begin(), track.log_class.end(), p.begin(),
                  [](double lp) { return std::exp(lp); });
+  return p;
+}
+
+std::vector<double> classProbabilities(const Track& track, const ClassTable& classes) {
+  std::vector<double> p = classProbabilities(track);
+  const double share = track.shareOfEvidence();
+  if (share >= 1) return p;
+  double sum = 0;
+  for (ClassId j = 0; j < classes.size(); ++j) {
+    double& own = p[static_cast<std::size_t>(j)];
+    own = std::pow(own, share) * std::pow(classes[j].prior, 1 - share);
+    sum += own;
+  }
+  for (double& own : p) own /= sum;
   return p;
 }
 

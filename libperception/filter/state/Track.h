@@ -122,6 +122,8 @@ struct Track {
   std::optional<Vector2> walked_from;   ///< [m] world; from here on its way tells body_heading
   std::array<Stamp, kMostModalities> last_hit{};  ///< by modality (modalityIndex); 0 = never
   std::array<int, kMostModalities> hits{};        ///< by modality
+  /// Since the last hit: detections that a sensor which tells classes by shape should have had.
+  double missed = 0;
   std::vector<RegionSeen> regions;     ///< by sensor, only with [filter] region_memory > 0
   std::vector<EvidenceSeen> evidence;  ///< by sensor
   ReachableDisc reachable;             ///< computed at the end of the update
@@ -131,6 +133,9 @@ struct Track {
 
   /// Probability that it is a real object.
   double real() const { return existence * (1 - phantom); }
+  /// Share of the evidence of its class that counts: what was seen a few times and is not seen
+  /// again where it should be was rather a part of something else.
+  double shareOfEvidence() const;
   /// Index of the most probable class.
   ClassId likeliestClass() const;
   /// Whether the class's filter is updated.
@@ -219,5 +224,7 @@ std::uint64_t sensorKey(const std::string& label);
 
 /// Posterior class probabilities as numbers (exp of log_class).
 std::vector<double> classProbabilities(const Track& track);
+/// The same with the share of the evidence that counts; as they are output.
+std::vector<double> classProbabilities(const Track& track, const ClassTable& classes);
 
 }  // namespace perception

@@ -188,6 +188,7 @@ Track hitTrack(Track predicted, const TrackLikelihoods& row, const PairLikelihoo
   track.last_in_view = scan.state.stamp;
   track.last_hit[modalityIndex(scan.modality)] = scan.state.stamp;
   ++track.hits[modalityIndex(scan.modality)];
+  track.missed = 0;
 
   const auto best =
       static_cast<ClassId>(std::min_element(pair.nis.begin(), pair.nis.end()) - pair.nis.begin());
@@ -246,6 +247,7 @@ Track missTrack(Track predicted, const TrackLikelihoods& row, const MeasurementS
   const double r = track.existence;
   track.existence = r * (1 - row.seen) / (1 - r * row.seen);
   phantomMiss(scan, row.detection, track);
+  if (scan.model->evidenceMemory()) track.missed += row.detection;
   if (const auto look = missedLook(track, scan, row.detection_by_class, row.visible)) {
     const RepeatedEvidence evidence(track, *look, scan, model.params.class_epsilon);
     for (std::size_t j = 0; j < track.log_class.size(); ++j)
