@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <numeric>
 #include <utility>
 
@@ -16,8 +15,8 @@ ClassId Track::likeliestClass() const {
 }
 
 double Track::shareOfEvidence() const {
-  static const double k = getenv("FREE") ? atof(getenv("FREE")) : 1;
-  const double seen = k + std::accumulate(hits.begin(), hits.end(), 0);
+  constexpr double kFree = 1;  // hit that may be taken as seen before (assumed)
+  const double seen = kFree + std::accumulate(hits.begin(), hits.end(), 0);
   return seen / (seen + missed);
 }
 

@@ -16,7 +16,11 @@ constexpr std::size_t kAngles = 8;  // of the average over unknown headings
 constexpr double kAnyWidth = 0.001, kAnyBoxWidth = 0.05;
 /// Of things that lidars do not surely tell from road users: wider than 3 m is a mean share of .12
 /// over seven recordings (12,332 clusters), which a thing of 1 m with that deviation hardly is.
-constexpr double kAnyWidthOfThings = 0.12;
+/// Their number falls with the width: in six of them .03 to .055 of the things a meter at 3 to 4 m,
+/// .017 to .04 at 4 to 5 m, .009 to .016 at 6 to 8 m and .007 to .011 beyond, as one over the width
+/// does (.029, .022, .014, .011).
+constexpr double kWideThings = 0.12, kWide = 3;
+constexpr double kAnyNarrowWidth = 0.04;  // share of any width up to kWide (assumed)
 /// Exponent of a width that the shape has told already (judged on recordings, decisions/filter.md).
 constexpr double kRepeated = 0.4;
 
@@ -64,14 +68,16 @@ double widthDensity(const ObjectClass& c, double width, double noise, double sha
 }  // namespace
 
 NewbornWidth::NewbornWidth(const ClassTable& classes, double width, double noise, bool by_shape)
-    : classes_(classes),
-      width_(width),
-      noise_(noise),
-      any_width_of_things_(by_shape ? kAnyWidthOfThings : kAnyWidth) {}
+    : classes_(classes), width_(width), noise_(noise), by_shape_(by_shape) {}
 
 double NewbornWidth::density(ClassId c) const {
-  const bool thing = classes_[c].shape == ObjectShape::kThing;
-  return widthDensity(classes_[c], width_, noise_, thing ? any_width_of_things_ : kAnyWidth);
+  const ObjectClass& own = classes_[c];
+  if (!by_shape_ || own.shape != ObjectShape::kThing)
+    return widthDensity(own, width_, noise_, kAnyWidth);
+  const double usual = (1 - kWideThings - kAnyNarrowWidth) * widthDensity(own, width_, noise_);
+  if (width_ < kWide) return usual + kAnyNarrowWidth / kWide;
+  return usual +
+         kWideThings / (std::log(kWidestClutter / kWide) * std::min(width_, kWidestClutter));
 }
 
 double NewbornWidth::gainInShape(ClassId c, double across) const {

@@ -33,7 +33,7 @@ class NewbornWidth {
 
   const ClassTable& classes_;
   double width_, noise_;
-  double any_width_of_things_;  ///< their share
+  bool by_shape_;
 };
 
 }  // namespace perception
