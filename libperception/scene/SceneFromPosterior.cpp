@@ -102,8 +102,10 @@ SceneObject SceneFromPosterior::objectOf(const Track& track) {
   SceneObject o;
   o.id = numberOf(track.id);
   o.class_probability = classProbabilities(track, model_.classes);
-  o.class_id = track.likeliestClass();
-  const auto best = static_cast<std::size_t>(o.class_id);
+  const auto best = static_cast<std::size_t>(
+      std::max_element(o.class_probability.begin(), o.class_probability.end()) -
+      o.class_probability.begin());
+  o.class_id = static_cast<ClassId>(best);
   o.classified = o.class_probability[best] >= params_.classified_at;
   o.existence = track.real();
 

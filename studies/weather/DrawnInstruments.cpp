@@ -13,7 +13,7 @@ namespace perception {
 namespace {
 
 constexpr std::uint32_t kPurpose = 0x696e7374;  // of the random numbers
-constexpr double kKnown = 1.1, kShare = 0.9;    // factor, and how often it holds
+constexpr double kKnown = 1.1, kHolds = 0.9;    // factor, and how often it holds
 
 /// Standard normal quantiles of `count` equally likely intervals, in random order.
 std::vector<double> shuffledQuantiles(std::size_t count, Rng& rng) {
@@ -32,7 +32,7 @@ std::vector<DrawnInstrument> drawnInstruments(std::size_t count, std::uint64_t s
   Rng rng({seed, 0, 0, kPurpose});
   const std::vector<double> divergence = shuffledQuantiles(count, rng),
                             reflectivity = shuffledQuantiles(count, rng);
-  const double sigma = std::log(kKnown) / quantile(boost::math::normal(), 1 - (1 - kShare) / 2);
+  const double sigma = std::log(kKnown) / quantile(boost::math::normal(), 1 - (1 - kHolds) / 2);
   const SimulatedWeatherParams usual;
   std::vector<DrawnInstrument> out(count);
   for (std::size_t k = 0; k < count; ++k) {

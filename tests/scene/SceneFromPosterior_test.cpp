@@ -44,6 +44,29 @@ TEST(Scene, LeavesOutObjectsWhosePlaceIsTooUncertainForTheirSize) {
   EXPECT_EQ(putOut(1.01, 0.5), 0U);
 }
 
+TEST(Scene, WhatWasSeenOnceAndNotAgainWhereItShouldBeIsLessSureOfItsClass) {
+  FilterModel model;
+  model.classes = test::pedestrianAndCar();
+  model.classes.classes[0].prior = 0.9, model.classes.classes[1].prior = 0.1;
+  EgoState ego;
+  ego.stamp = test::kFirstStamp;
+  const auto car = [&](int hits, double missed) {
+    Track track = *oneCar(0.1).tracks[0];
+    track.log_class = {std::log(0.03), std::log(0.97)};
+    track.hits[0] = hits, track.missed = missed;
+    const Hypothesis h(TrackTable{std::make_shared<const Track>(track)});
+    return SceneFromPosterior(model, {}).make(h, ego, 0).objects.at(0);
+  };
+  EXPECT_TRUE(car(1, 0).classified);
+  EXPECT_NEAR(car(1, 0).class_probability[1], 0.97, 1e-9);
+  EXPECT_FALSE(car(1, 0.9).classified);
+  // Two of three looks count: between the prior and what was said.
+  const double odds = std::pow(97 / 3.0, 2 / 3.0) * std::pow(1 / 9.0, 1 / 3.0);
+  EXPECT_NEAR(car(1, 1).class_probability[1], odds / (1 + odds), 1e-9);
+  EXPECT_EQ(car(1, 1).class_id, 1) << "it stays the likeliest class";
+  EXPECT_GT(car(30, 1).class_probability[1], 0.96) << "what was seen for long stays what it is";
+}
+
 TEST(Scene, LeavesOutObjectsThatAreNowhere) {
   const double sigma = 5 / std::sqrt(2.0);
   EXPECT_EQ(putOut(0.99 * sigma, 0, 5), 1U);

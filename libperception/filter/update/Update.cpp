@@ -184,12 +184,10 @@ Track hitTrack(Track predicted, const TrackLikelihoods& row, const PairLikelihoo
       weighedLookOf(track, m, scan, row.detection_by_class, model.classes);
   track.history = extendHistory(track.history, scan_index, pair.measurement);
   track.existence = model.params.existence_max;
-  track.stands = pair.stands, track.goes_along = pair.goes_along;
+  track.stands = pair.stands, track.goes_along = pair.goes_along, track.missed = 0;
   track.last_in_view = scan.state.stamp;
   track.last_hit[modalityIndex(scan.modality)] = scan.state.stamp;
   ++track.hits[modalityIndex(scan.modality)];
-  track.missed = 0;
-
   const auto best =
       static_cast<ClassId>(std::min_element(pair.nis.begin(), pair.nis.end()) - pair.nis.begin());
   const ClassId live = track.decided_class < 0 ? best : track.decided_class;

@@ -17,10 +17,6 @@ void SimulatedWeatherParams::visit(ParamVisitor& v) {
   v.choiceOf("precipitation", precipitation, kPrecipitations,
              "lidar returns of rain and snow: by a measured law, of flakes by their sizes, or drop "
              "by drop");
-  v.real("beam_divergence_mrad", beam_divergence_mrad, {0.1, 20}, "mrad",
-         "full angle of a lidar's beam, for drops and flakes one by one");
-  v.real("flake_reflectivity", flake_reflectivity, {0.01, 1}, "-",
-         "of a snow flake at the lidar's wavelength, for flakes one by one");
   v.real("rain_mm_h", rain_mm_h, {0, 200}, "mm/h", "rain; 50 is a downpour");
   v.real("snow_mm_h", snow_mm_h, {0, 20}, "mm/h", "snowfall, as water; from 2.5 on it is heavy");
   v.real("fog_mor", fog_mor, {0, 20000}, "m", "range of sight in fog; 0: none");
@@ -35,6 +31,11 @@ void SimulatedWeatherParams::visit(ParamVisitor& v) {
   v.real("humidity", humidity, {0, 1}, "-", "relative; above 0.85 one sees exhaust");
   v.real("wind_speed", wind_speed, {0, 50}, "m/s", "carries spray and exhaust");
   v.angle("wind_towards_deg", wind_towards, {-360, 360}, "where it blows: world, from x towards y");
+  v.expert();
+  v.real("beam_divergence_mrad", beam_divergence_mrad, {0.1, 20}, "mrad",
+         "full angle of a lidar's beam, for drops and flakes one by one");
+  v.real("flake_reflectivity", flake_reflectivity, {0.01, 1}, "-",
+         "of a snow flake at the lidar's wavelength, for flakes one by one");
   v.require(fog_mor == 0 || fog_mor >= 10, "fog_mor: expected 0 or 10 m and more");
 }
 

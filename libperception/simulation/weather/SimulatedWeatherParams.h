@@ -15,12 +15,12 @@ struct SimulatedWeatherParams {
   /// single drops and flakes, the second generator for validation.
   enum class Precipitation { kMeasured, kSizes, kParticles };
   Precipitation precipitation = Precipitation::kMeasured;
-  /// Of the second generator's lidars (ParticleReceiver).
-  double beam_divergence_mrad = 3, flake_reflectivity = 0.9;
-  double rain_mm_h = 0;         ///< [mm/h] method.md 9.1
-  double snow_mm_h = 0;         ///< [mm/h] of water, method.md 9.2
-  double fog_mor = 0;           ///< [m] meteorological optical range, method.md 9.3; 0: no fog
-  double water_film_mm = 0;     ///< [mm] mean depth on the road, method.md 9.7
+  double beam_divergence_mrad = 3;  ///< [mrad] of the second generator's lidars, method.md 9
+  double flake_reflectivity = 0.9;  ///< [0, 1] of its flakes [hahner2022], method.md 9.2
+  double rain_mm_h = 0;             ///< [mm/h] method.md 9.1
+  double snow_mm_h = 0;             ///< [mm/h] of water, method.md 9.2
+  double fog_mor = 0;               ///< [m] meteorological optical range, method.md 9.3; 0: no fog
+  double water_film_mm = 0;         ///< [mm] mean depth on the road, method.md 9.7
   double snow_cover = 0;        ///< [0, 1] share of objects and ground under snow, method.md 9.9
   Sky sky = Sky::kOfScenario;   ///< method.md 9.9
   double shop_windows = 0;      ///< [0, 1] share of glass in the ground floors of houses

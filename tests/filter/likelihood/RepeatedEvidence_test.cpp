@@ -23,6 +23,31 @@ double add(Track& track, const MeasurementScan& scan, std::size_t j = 0) {
   return added;
 }
 
+TEST(Track, CountsTheLooksThatShouldHaveShownWhatASensorToldByItsShape) {
+  RepeatFixture f;
+  Track track = f.hit(f.born(f.seen(0, kAhead)), f.seen(0.1, kAhead));
+  EXPECT_EQ(track.missed, 0);
+  EXPECT_EQ(track.shareOfEvidence(), 1);
+  MeasurementScan empty = f.seen(0.2, kAhead);
+  empty.measurements.clear();
+  const auto miss = [&](const MeasurementScan& scan) {
+    track = predictTrack(track, scan.state.stamp, f.model);
+    const auto table = likelihoodTable({track}, scan, f.model);
+    track = missTrack(track, table.tracks[0], scan, f.model);
+    return table.tracks[0].detection;
+  };
+  const double detection = miss(empty);
+  EXPECT_GT(detection, 0.1);
+  EXPECT_NEAR(track.missed, detection, 1e-12);
+  EXPECT_NEAR(track.shareOfEvidence(), 3 / (3 + detection), 1e-12);
+  EXPECT_EQ(f.hit(track, f.seen(0.3, kAhead)).missed, 0) << "it is there again";
+  f.repeats = Repeats::kNothing;  // a sensor that tells no shapes
+  MeasurementScan other = f.seen(0.3, {});
+  other.measurements.clear();
+  miss(other);
+  EXPECT_NEAR(track.missed, detection, 1e-12);
+}
+
 TEST(RepeatedEvidence, TheFirstViewCountsFully) {
   const RepeatFixture f;
   Track track;

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "libperception/core/math/Angle.h"
 
 namespace perception {
@@ -37,9 +39,24 @@ TEST(NewbornWidth, AThingMayBeAWallWhereTheShapeIsTold) {
   const auto density = [&](double width, bool by_shape, ClassId c) {
     return NewbornWidth(classes, width, 0.01, by_shape).density(c);
   };
-  EXPECT_NEAR(density(5, true, 2), 0.12 / kWidestClutter, 1e-6);
+  // A share of .12 from 3 to 10 m, which falls as one over the width.
+  EXPECT_NEAR(density(5, true, 2), 0.12 / std::log(10 / 3.0) / 5, 1e-4);
+  EXPECT_NEAR(density(9, true, 2) / density(4.5, true, 2), 0.5, 0.01);
   EXPECT_NEAR(density(5, false, 2), 0.001 / kWidestClutter, 1e-6);
   EXPECT_EQ(density(5, true, 0), density(5, false, 0)) << "no vehicle has any width";
+}
+
+TEST(NewbornWidth, IsADensity) {
+  ClassTable classes = vehiclesAndWalkers();
+  classes.classes.emplace_back();
+  classes.classes.back().length = classes.classes.back().width = 1.5;
+  classes.classes.back().length_sigma = classes.classes.back().width_sigma = 0.4;
+  for (ClassId c = 0; c < 3; ++c) {
+    double sum = 0;
+    for (double width = 0.005; width < 10; width += 0.01)
+      sum += 0.01 * NewbornWidth(classes, width, 0.01, true).density(c);
+    EXPECT_NEAR(sum, 1, 0.01) << c;
+  }
 }
 
 }  // namespace
