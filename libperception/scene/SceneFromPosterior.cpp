@@ -116,7 +116,8 @@ SceneObject SceneFromPosterior::objectOf(const Track& track) {
   o.sd_x = std::sqrt(mixture.covariance(0, 0));
   o.sd_y = std::sqrt(mixture.covariance(1, 1));
 
-  const ClassFilter& f = track.bank[best];
+  // What it is may be in doubt; its place and size stay those of what it was seen as.
+  const ClassFilter& f = track.bank[static_cast<std::size_t>(track.likeliestClass())];
   const double speed = o.velocity.norm();
   const Vector2 along = speed > 1e-9 ? Vector2(o.velocity / speed) : Vector2(1, 0);
   const Matrix2 velocity_covariance = mixture.covariance.bottomRightCorner<2, 2>();

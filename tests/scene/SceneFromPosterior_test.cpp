@@ -54,6 +54,7 @@ TEST(Scene, WhatWasSeenOnceAndNotAgainWhereItShouldBeIsLessSureOfItsClass) {
     Track track = *oneCar(0.1).tracks[0];
     track.log_class = {std::log(0.03), std::log(0.97)};
     track.hits[0] = hits, track.missed = missed;
+    track.bank[0].extent = {0.5, 0.5, 0.01, 0.01};
     const Hypothesis h(TrackTable{std::make_shared<const Track>(track)});
     return SceneFromPosterior(model, {}).make(h, ego, 0).objects.at(0);
   };
@@ -64,6 +65,8 @@ TEST(Scene, WhatWasSeenOnceAndNotAgainWhereItShouldBeIsLessSureOfItsClass) {
   const double odds = std::pow(97 / 3.0, 2 / 3.0) * std::pow(1 / 9.0, 1 / 3.0);
   EXPECT_NEAR(car(1, 1).class_probability[1], odds / (1 + odds), 1e-9);
   EXPECT_EQ(car(1, 1).class_id, 1) << "it stays the likeliest class";
+  EXPECT_EQ(car(1, 6).class_id, 0);
+  EXPECT_EQ(car(1, 6).length, car(1, 0).length) << "it is not shorter for that";
   EXPECT_GT(car(30, 1).class_probability[1], 0.96) << "what was seen for long stays what it is";
 }
 
