@@ -100,6 +100,7 @@ ScanTracks tracksOf(const std::vector<const Hypothesis*>& hypotheses, const Meas
   ScanTracks out;
   TrackIndexMap numbers(hypotheses, out.before);
   out.of_hypothesis.reserve(hypotheses.size());
+  out.hypotheses = hypotheses;
   for (const Hypothesis* h : hypotheses) out.of_hypothesis.push_back(numbers.of(h->tracks));
   out.touched.assign(out.before.size(), 0);
   const bool position_only = isPositionOnly(scan);

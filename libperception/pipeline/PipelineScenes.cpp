@@ -86,9 +86,12 @@ void Pipeline::makeScenes(std::optional<Stamp> now) {
 
 std::set<std::uint64_t> Pipeline::livingObjects() {
   std::unordered_set<std::uint64_t> tracks;
-  for (const auto& track : tracker_.mapHypothesis().tracks) tracks.insert(track->id);
-  for (const auto& particle : tracker_.m_particles)
-    for (const auto& track : particle.d->tracks) tracks.insert(track->id);
+  const auto addTracks = [&tracks](const Hypothesis& hypothesis) {
+    for (const auto& track : hypothesis.tracks) tracks.insert(track->id);
+    for (const EndedTrack& e : hypothesis.ended) tracks.insert(e.track->id);
+  };
+  addTracks(tracker_.mapHypothesis());
+  for (const auto& particle : tracker_.m_particles) addTracks(*particle.d);
   std::set<std::uint64_t> ids = scenes_.keepOnly(tracks);
   const auto add = [&ids](const Scene& scene) {
     for (const SceneObject& object : scene.objects) ids.insert(object.id);

@@ -183,11 +183,11 @@ const Track& SceneFromPosterior::latestOf(const TrackHandle& track, Stamp stamp)
              : *track;
 }
 
-void SceneFromPosterior::keepSleepers(const Hypothesis& hypothesis,
+void SceneFromPosterior::keepSleepers(const std::vector<TrackHandle>& tracks,
                                       const std::vector<TrackHandle>& predicted) {
   sleepers_.clear();
   for (std::size_t i = 0; i < predicted.size(); ++i) {
-    const TrackHandle& track = hypothesis.tracks[i];
+    const TrackHandle& track = tracks[i];
     if (predicted[i] && predicted[i]->stamp > track->stamp)
       sleepers_[track.get()] = {track, predicted[i]};
   }
@@ -199,10 +199,12 @@ Scene SceneFromPosterior::make(const Hypothesis& hypothesis, const EgoState& ego
   scene.stamp = ego.stamp;
   scene.frame = frame;
   scene.ego = ego;
-  std::vector<TrackHandle> tracks(hypothesis.tracks.size());
-  parallelFor(tracks.size(),
-              [&](std::size_t i) { tracks[i] = trackAt(hypothesis.tracks[i], ego.stamp); });
-  keepSleepers(hypothesis, tracks);
+  std::vector<TrackHandle> sources(hypothesis.tracks.begin(), hypothesis.tracks.end());
+  for (const EndedTrack& e : hypothesis.ended)
+    if (ego.stamp < e.end) sources.push_back(e.track);
+  std::vector<TrackHandle> tracks(sources.size());
+  parallelFor(tracks.size(), [&](std::size_t i) { tracks[i] = trackAt(sources[i], ego.stamp); });
+  keepSleepers(sources, tracks);
   for (const auto& track : tracks) {
     if (!track) continue;
     SceneObject object = objectOf(*track);

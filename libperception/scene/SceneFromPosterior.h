@@ -63,7 +63,8 @@ class SceneFromPosterior {
   TrackHandle trackAt(const TrackHandle& track, Stamp stamp) const;
   /// The state to predict from: the track itself, or the last scene's prediction.
   const Track& latestOf(const TrackHandle& track, Stamp stamp) const;
-  void keepSleepers(const Hypothesis& hypothesis, const std::vector<TrackHandle>& predicted);
+  void keepSleepers(const std::vector<TrackHandle>& tracks,
+                    const std::vector<TrackHandle>& predicted);
   SceneObject objectOf(const Track& track);
   bool knowsPlace(const SceneObject& object) const;
   std::uint64_t numberOf(std::uint64_t track_id);

@@ -194,12 +194,20 @@ class TrackList {
   std::vector<std::uint32_t> places_;
 };
 
+/// The last state of a track that was dropped, and the scan at which it was.
+struct EndedTrack {
+  TrackHandle track;
+  Stamp end;
+};
+
 /// An association history and its tracks in order of birth. Immutable, since particles share
 /// hypotheses.
 struct Hypothesis {
   TrackList tracks;
   std::uint64_t key =
       0;  ///< order-independent hash of the tracks' histories: equal keys, equal hypotheses
+  /// Tracks dropped within the last FilterModel::history seconds: late scenes show them.
+  std::vector<EndedTrack> ended;
 
   Hypothesis() = default;
   explicit Hypothesis(TrackTable t);

@@ -129,6 +129,7 @@ Track smoothedBefore(const Track& filtered, const Track& newer, const FilterMode
   track.id = newer.id;
   track.birth = newer.birth;
   track.phantom = newer.phantom;  // the cause stays the same
+  track.hits = newer.hits, track.missed = newer.missed;  // what is known of it by now
   track.height = newer.height;
   if (dt <= 0) {
     track.bank = newer.bank;

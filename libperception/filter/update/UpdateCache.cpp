@@ -38,6 +38,7 @@ UpdateCache::Cell UpdateCache::hitCell(std::size_t track, std::size_t k) const {
 
 void UpdateCache::request(std::size_t h, const Association& association) {
   const auto& own = tracks_.of_hypothesis[h];
+  parents_.push_back(tracks_.hypotheses[h]);
   auto& cells = children_.emplace_back();
   cells.reserve(own.size() + association.cause.size());
   for (std::size_t k = 0; k < association.cause.size(); ++k) {
@@ -115,7 +116,22 @@ std::size_t UpdateCache::compute(std::uint64_t scan_index) {
   return static_cast<std::size_t>(std::count(requested_.begin(), requested_.end(), 1));
 }
 
+std::vector<EndedTrack> UpdateCache::endedOf(std::size_t c) const {
+  std::vector<EndedTrack> ended;
+  if (model_.history <= 0) return ended;
+  const Stamp now = scan_.state.stamp;
+  for (const EndedTrack& e : parents_[c]->ended)
+    if (now - e.end <= model_.history) ended.push_back(e);
+  for (const Cell cell : children_[c]) {
+    if ((*all_)[cell] || cell >= first_.back()) continue;
+    const auto next = std::upper_bound(first_.begin(), first_.end(), cell);
+    ended.push_back({tracks_.before[static_cast<std::size_t>(next - first_.begin()) - 1], now});
+  }
+  return ended;
+}
+
 HypothesisHandle UpdateCache::hypothesis(std::size_t c) {
+  std::vector<EndedTrack> ended = endedOf(c);
   std::vector<Cell> cells = duplicates_.merged(std::move(children_[c]));
   std::uint64_t key = 0;
   std::size_t kept = 0;
@@ -125,7 +141,9 @@ HypothesisHandle UpdateCache::hypothesis(std::size_t c) {
     cells[kept++] = cell;
   }
   cells.resize(kept);
-  return std::make_shared<const Hypothesis>(TrackList(all_, std::move(cells)), key);
+  Hypothesis hypothesis(TrackList(all_, std::move(cells)), key);
+  hypothesis.ended = std::move(ended);
+  return std::make_shared<const Hypothesis>(std::move(hypothesis));
 }
 
 }  // namespace perception

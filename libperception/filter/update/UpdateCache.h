@@ -14,6 +14,7 @@ struct ScanTracks {
   std::vector<Track> predicted;             ///< to the scan's stamp; empty unless touched
   std::vector<char> touched;                ///< may be in view: predicted and scored
   std::vector<TrackIndices> of_hypothesis;  ///< by distinct hypothesis
+  std::vector<const Hypothesis*> hypotheses;
 };
 
 /// Pass 4: the updated tracks of one scan, computed once per distinct (track, cause) that some
@@ -42,6 +43,8 @@ class UpdateCache {
   bool keepDeferred(const Track& t) const;
   /// `before`: the track before the scan; null for a newborn.
   void store(Cell cell, Track&& track, const TrackHandle& before);
+  /// What child `c` has lost within FilterModel::history seconds.
+  std::vector<EndedTrack> endedOf(std::size_t c) const;
 
   ScanTracks& tracks_;
   const LikelihoodTable& table_;
@@ -52,6 +55,7 @@ class UpdateCache {
   std::vector<Cell> of_track_;                 ///< cells in the association that is being looked at
   std::vector<char> requested_;
   std::vector<std::vector<Cell>> children_;  ///< cells, in the order of the hypothesis's tracks
+  std::vector<const Hypothesis*> parents_;   ///< by child
   TrackTable computed_;                      ///< null when not wanted or dropped
   DuplicateTable duplicates_;
   std::shared_ptr<const TrackTable> all_;  ///< computed_ and the replacements of duplicates_

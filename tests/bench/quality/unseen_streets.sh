@@ -2,34 +2,39 @@
 # How good are lidar classes on streets that the shape model has not seen? Each labeled recording is tracked with a model that
 # learned from the others and from simulated scenes ("blind"), and with the shipped one. A line a row with its figures, what is
 # wanted, and "met", "MISSED", "shown" (no goal) or "not measured". Ends with 1 where a row is missed or not measured.
-#   tests/bench/quality/unseen_streets.sh [-o OUT] [-s "1 2 3"] [-t SEED] [ROW ...]
+#   tests/bench/quality/unseen_streets.sh [-o OUT] [-s "1 2 3"] [-t SEED] [-l LAG] [ROW ...]
 #     ROW  left_out kitti_0000 kitti_0000_camera aimotive drive_0052 drive_0052_camera wads argoverse kitti_object delft
 #          headings; without one, all
 #     -s   seeds of the tracker [1 2 3]   -t  seed of the training [1]: figures move with it, so look at several
+#     -l   scenes LAG seconds late, by [run] output_lag, for logs that are processed afterwards [0: at once]
 # An hour and a half on two cores, most of it training. Logs, models and runs stay in OUT [out/unseen_streets]: what is there is not made again.
 # Delete OUT/runs after a change of the tracker, OUT/models after one of the segmentation or the descriptors.
 # PERCEPTION_BIN: programs [build/bin]. PERCEPTION_SHARED: folder with data/ and models/ [../shared].
 set -euo pipefail
 cd "$(dirname "$(readlink -f "$0")")/../../.."
 readonly rows="left_out kitti_0000 kitti_0000_camera aimotive drive_0052 drive_0052_camera wads argoverse kitti_object delft headings"
-out=out/unseen_streets seeds="1 2 3" training=1
-while getopts o:s:t:h option; do
+out=out/unseen_streets seeds="1 2 3" training=1 lag=0
+while getopts o:s:t:l:h option; do
   case $option in
     o) out=$OPTARG ;;
     s) seeds=$OPTARG ;;
     t) training=$OPTARG ;;
+    l) lag=$OPTARG ;;
     h) sed -n '2,/^set/{/^set/d;s/^# \{0,1\}//p}' "$0"; exit ;;
     *) exit 64 ;;
   esac
 done
 shift $((OPTIND - 1))
-readonly out seeds training bin=${PERCEPTION_BIN:-build/bin} shared=${PERCEPTION_SHARED:-../shared}
+readonly out seeds training lag bin=${PERCEPTION_BIN:-build/bin} shared=${PERCEPTION_SHARED:-../shared}
 readonly data=$shared/data models=$out/models/seed_$training tool=tests/bench/quality/unseen_streets.py
+runs=$out/runs
+[[ $lag == 0 ]] || runs=$out/runs_late_$lag
+readonly runs
 read -ra chosen <<<"${*:-$rows}"
 for row in "${chosen[@]}"; do
   [[ " $rows " == *" $row "* ]] || { echo "unseen_streets.sh: no row \"$row\"; there are: $rows" >&2; exit 64; }
 done
-mkdir -p "$out/logs" "$out/runs" "$models"
+mkdir -p "$out/logs" "$runs" "$models"
 
 # Warnings (exit code 3) are no failure.
 quietly() {
@@ -100,14 +105,14 @@ blind() {
   quietly "$bin/perception-calibrate" lidar-classes "${used[@]}" --model-only -o "${model%/*}"
 }
 
-# track LOG INI SENSORS MODEL TAG settings...: every seed; the runs are OUT/runs/TAG-SEED. MODEL: "shipped", or a file
+# track LOG INI SENSORS MODEL TAG settings...: every seed; the runs are $runs/TAG-SEED. MODEL: "shipped", or a file
 track() {
-  local in=$1 ini=$2 sensors=$3 with=$4 tag=$5 seed set=() s
+  local in=$1 ini=$2 sensors=$3 with=$4 tag=$5 seed set=(--set "run.output_lag=$lag") s
   shift 5
   [[ $with == shipped ]] || set+=(--set "sensor.LIDAR_TOP.classifier.file=$(readlink -f "$with")")
   for s in "$@"; do set+=(--set "$s"); done
   for seed in $seeds; do
-    [[ -f $out/runs/$tag-$seed/done.json ]] || quietly "$bin/perception-track" -c "$ini" -i "$in" -o "$out/runs/$tag-$seed" \
+    [[ -f $runs/$tag-$seed/done.json ]] || quietly "$bin/perception-track" -c "$ini" -i "$in" -o "$runs/$tag-$seed" \
       --overwrite --sensors "$sensors" --seed "$seed" ${set[@]+"${set[@]}"}
   done
 }
@@ -117,8 +122,8 @@ evaluate() {
   local tag=$1 truth=$2 range=$3 seed
   shift 3
   for seed in $seeds; do
-    quietly "$bin/perception-evaluate" -r "$out/runs/$tag-$seed" -t "$truth" --range "$range" "$@" --no-plots -o "$out/runs/$tag-$seed.$range"
-    found+=("$out/runs/$tag-$seed.$range/report.json")
+    quietly "$bin/perception-evaluate" -r "$runs/$tag-$seed" -t "$truth" --range "$range" "$@" --no-plots -o "$runs/$tag-$seed.$range"
+    found+=("$runs/$tag-$seed.$range/report.json")
   done
 }
 
@@ -171,7 +176,7 @@ drive() {
   [[ -f $out/drive_0052.ini ]] || tests/bench/quality/unseen_drive.py ini "$(readlink -f ini/kitti.ini)" "$out/drive_0052.ini"
   blind drive_0052
   track "$l/drive_0052.rawlog" "$out/drive_0052.ini" "$sensors" "$model" "$tag.blind" ego.source=lidar
-  run=$out/runs/$tag.blind-${seeds%% *}
+  run=$runs/$tag.blind-${seeds%% *}
   [[ -f $l/drive_0052.truth.csv ]] || tests/bench/quality/unseen_drive.py truth "$data/kitti_cam_lidar_drive0052/label_2" \
     "$data/kitti_tracking/calib/0000.txt" "$run/scenes.csv" "$l/drive_0052.truth.csv"
   evaluate "$tag.blind" "$l/drive_0052.truth.csv" 40 --fov-deg 80 --complete-fov-deg 80 --min-points 0 --any-truth
@@ -189,12 +194,12 @@ drive_0052_camera() {
 
 # The labels of the returns say which certain road users stand on one, and which groups of persons have an output.
 wads() {
-  local model runs=() tag seed
+  local model found=() tag seed
   blind wads
   track "$out/logs/wads.rawlog" ini/wads.ini L shipped wads-L
   track "$out/logs/wads.rawlog" ini/wads.ini L "$model" wads-L.blind
-  for tag in wads-L wads-L.blind; do for seed in $seeds; do runs+=("$out/runs/$tag-$seed"); done; done
-  $tool wads "$data/wads_snow" "${runs[@]}"
+  for tag in wads-L wads-L.blind; do for seed in $seeds; do found+=("$runs/$tag-$seed"); done; done
+  $tool wads "$data/wads_snow" "${found[@]}"
 }
 
 argoverse() {
