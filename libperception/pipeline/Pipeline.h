@@ -121,7 +121,7 @@ class Pipeline {
   void putOutput(OutputSchedule::Instant instant);
   void tellOf(const OutputSchedule::Instant& instant);
   Scene sceneOf(const EgoState& ego, std::int64_t frame);
-  void putScene(Scene scene, const PathAhead& path);
+  void putScene(Scene scene, const OutputSchedule::Instant& instant);
   void catchUp(std::size_t most = 0);
   void makeScenes(std::optional<Stamp> now);
   void restartTracks();

@@ -20,6 +20,12 @@ void Pipeline::addOutput(const EgoState& ego, std::int64_t frame) {
     late.work = grid_work_.add([this, &late] { findPath(late.instant); });
   } else {
     findPath(instant);
+    // A stop cannot wait for what is known later.
+    if (setup_.run.output_lag > 0 && instant.path.known) {
+      const auto scope = timing_.stage("scene");
+      instant.advice =
+          safety_->advise(instant.path, scenes_.make(tracker_.mapHypothesis(), ego, frame));
+    }
     putOutput(std::move(instant));
   }
 }
@@ -62,7 +68,7 @@ void Pipeline::catchUp(std::size_t most) {
     LateScene late = std::move(late_.front());
     late_.pop_front();
     tellOf(late.instant);
-    putScene(std::move(late.scene), late.instant.path);
+    putScene(std::move(late.scene), late.instant);
   }
 }
 
@@ -72,8 +78,12 @@ Scene Pipeline::sceneOf(const EgoState& ego, std::int64_t frame) {
   return scenes_.make(tracker_.mapHypothesis(), ego, frame);
 }
 
-void Pipeline::putScene(Scene scene, const PathAhead& path) {
-  if (path.known) scene.path = safety_->advise(path, scene);
+void Pipeline::putScene(Scene scene, const OutputSchedule::Instant& instant) {
+  if (instant.advice) {
+    scene.path = instant.advice;
+  } else if (instant.path.known) {
+    scene.path = safety_->advise(instant.path, scene);
+  }
   for (PipelineObserver* o : observers_) o->onOutput(scene);
   ready_.push_back(std::move(scene));
 }
@@ -81,7 +91,7 @@ void Pipeline::putScene(Scene scene, const PathAhead& path) {
 /// Makes the scenes whose lag has passed; without `now` (end of log) all.
 void Pipeline::makeScenes(std::optional<Stamp> now) {
   while (const auto instant = outputs_.takeDue(now))
-    putScene(sceneOf(instant->ego, instant->frame), instant->path);
+    putScene(sceneOf(instant->ego, instant->frame), *instant);
 }
 
 std::set<std::uint64_t> Pipeline::livingObjects() {

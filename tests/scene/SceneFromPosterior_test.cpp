@@ -70,6 +70,21 @@ TEST(Scene, WhatWasSeenOnceAndNotAgainWhereItShouldBeIsLessSureOfItsClass) {
   EXPECT_GT(car(30, 1).class_probability[1], 0.96) << "what was seen for long stays what it is";
 }
 
+TEST(Scene, ALateOneShowsWhatHasEndedSince) {
+  FilterModel model;
+  model.classes = test::pedestrianAndCar();
+  model.history = 2;
+  Hypothesis now;
+  now.ended = {{oneCar(0.1).tracks[0], test::kFirstStamp + 0.1}};
+  const auto objects = [&](double t) {
+    EgoState ego;
+    ego.stamp = test::kFirstStamp + t;
+    return SceneFromPosterior(model, {}).make(now, ego, 0).objects.size();
+  };
+  EXPECT_EQ(objects(0), 1U);
+  EXPECT_EQ(objects(0.1), 0U) << "its end";
+}
+
 TEST(Scene, LeavesOutObjectsThatAreNowhere) {
   const double sigma = 5 / std::sqrt(2.0);
   EXPECT_EQ(putOut(0.99 * sigma, 0, 5), 1U);

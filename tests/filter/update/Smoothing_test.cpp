@@ -35,21 +35,22 @@ struct History {
     states.push_back(handle);
     return *handle;
   }
-  void start(double x, double y) {
+  Track& start(double x, double y) {
     const auto scan = positionScan(sensor, 0, {{x, y, 0}});
-    add(newTrack(likelihoodTable({}, scan, model).births[0], 0, scan, 0, model));
+    return add(newTrack(likelihoodTable({}, scan, model).births[0], 0, scan, 0, model));
   }
   Track predicted(Stamp to) const { return predictTrack(*states.back(), to, model); }
-  void hit(double t, double x, double y) {
+  Track& hit(double t, double x, double y) {
     const auto scan = positionScan(sensor, t, {{x, y, 0}});
     const Track before = predicted(scan.state.stamp);
     const auto table = likelihoodTable({before}, scan, model);
-    add(hitTrack(before, table.tracks[0], table.tracks[0].pairs.at(0), scan, states.size(), model));
+    return add(
+        hitTrack(before, table.tracks[0], table.tracks[0].pairs.at(0), scan, states.size(), model));
   }
-  void miss(double t) {
+  Track& miss(double t) {
     const auto scan = positionScan(sensor, t, {});
     const Track before = predicted(scan.state.stamp);
-    add(missTrack(before, likelihoodTable({before}, scan, model).tracks[0], scan, model));
+    return add(missTrack(before, likelihoodTable({before}, scan, model).tracks[0], scan, model));
   }
   Track smoothed(double t) const {
     return smoothedTrack(*states.back(), Stamp::fromSeconds(1000 + t), model).value();
@@ -148,6 +149,25 @@ TEST(Smoothing, WhatIsThereLaterWasThereBefore) {
   EXPECT_LT(h.states[1]->existence, 0.5);
   EXPECT_NEAR(h.smoothed(0.1).existence, 1, 1e-12);
   EXPECT_FALSE(smoothedTrack(*h.states.back(), Stamp::fromSeconds(999.9), h.model));
+}
+
+TEST(Smoothing, DetectionsThatCameLaterCountForTheClass) {
+  History h;
+  Track& first = h.start(1, 2);
+  first.hits = {}, first.missed = 1;  // one of two looks, the free one
+  Track& last = h.hit(0.1, 1, 2);
+  last.hits = {}, last.hits[0] = 7, last.missed = 0;
+  EXPECT_DOUBLE_EQ(h.states[0]->shareOfEvidence(), 0.5);
+  EXPECT_EQ(h.smoothed(0).shareOfEvidence(), 1);
+}
+
+TEST(Smoothing, WhatIsNotSeenAgainIsLessSureInTheScansThatShowedIt) {
+  History h;
+  h.start(1, 2).hits = {};
+  Track& last = h.miss(0.1);
+  last.hits = {}, last.missed = 1;
+  EXPECT_EQ(h.states[0]->shareOfEvidence(), 1);
+  EXPECT_DOUBLE_EQ(h.smoothed(0).shareOfEvidence(), 0.5);
 }
 
 TEST(Smoothing, ExistenceIsThatOfTheTwoStateChain) {

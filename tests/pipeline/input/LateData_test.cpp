@@ -85,17 +85,18 @@ TEST(FrameQueue, HoldsSeventyFramesAtMost) {
 }
 
 /// The simulated demo log's first seconds, in order of time.
+Log demoLogOf(double seconds) {
+  registerPerceptionClasses();
+  Log out;
+  RawlogReader reader(PERCEPTION_SOURCE_DIR "/rawlogs/demo.rawlog");
+  while (auto o = reader.next()) {
+    if (!out.empty() && *toStamp(o->timestamp) - *toStamp(out.front()->timestamp) > seconds) break;
+    out.push_back(std::move(o));
+  }
+  return out;
+}
 const Log& demoLog() {
-  static const Log log = [] {
-    registerPerceptionClasses();
-    Log out;
-    RawlogReader reader(PERCEPTION_SOURCE_DIR "/rawlogs/demo.rawlog");
-    while (auto o = reader.next()) {
-      if (!out.empty() && *toStamp(o->timestamp) - *toStamp(out.front()->timestamp) > 5) break;
-      out.push_back(std::move(o));
-    }
-    return out;
-  }();
+  static const Log log = demoLogOf(5);
   return log;
 }
 
@@ -247,6 +248,23 @@ TEST(OutputLag, EveryInstantComesOnceAndIsTheSameForAnyThreads) {
     EXPECT_EQ(lagged.text, first);
   }
   EXPECT_NE(first, causal.text);
+}
+
+TEST(OutputLag, AStopDoesNotWaitForWhatIsKnownLater) {
+  const Log log = demoLogOf(11);  // at its end a vehicle is in the way
+  const Tracked causal = track(log), lagged = track(log, "run.output_lag=0.5");
+  ASSERT_EQ(lagged.scenes.size(), causal.scenes.size());
+  std::size_t blocked = 0;
+  for (std::size_t i = 0; i < causal.scenes.size(); ++i) {
+    ASSERT_EQ(lagged.scenes[i].path.has_value(), causal.scenes[i].path.has_value()) << i;
+    if (!causal.scenes[i].path) continue;
+    const FreePath &late = *lagged.scenes[i].path, &at_once = *causal.scenes[i].path;
+    EXPECT_EQ(late.stop, at_once.stop) << i;
+    EXPECT_EQ(late.cause, at_once.cause) << i;
+    EXPECT_EQ(late.safe_speed, at_once.safe_speed) << i;
+    blocked += at_once.blocked;
+  }
+  EXPECT_GT(blocked, 0u);
 }
 
 TEST(OutputLag, NothingIsLeftToSmoothInTheLastScene) {
