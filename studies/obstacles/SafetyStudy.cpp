@@ -4,6 +4,7 @@
 
 #include <CLI/CLI.hpp>
 #include <array>
+#include <deque>
 #include <filesystem>
 #include <iterator>
 #include <map>
@@ -44,7 +45,15 @@ struct SafetyCounts {
   }
 };
 
-/// Judges every labeled scan, then the scene made at it.
+/// A labeled scan that waits for its scene.
+struct JudgedScan {
+  Stamp stamp;
+  LabeledObstacles obstacles;
+  std::array<bool, kMonitorCount - 1> stops;  // of the monitors without tracks
+  InTheWay real;                              // what is in the way
+};
+
+/// Judges every labeled scan, then the scene of its instant, which may be made later.
 class SafetyObserver : public PipelineObserver {
  public:
   SafetyObserver(const std::string& log, const PipelineSetup& setup)
@@ -75,19 +84,24 @@ class SafetyObserver : public PipelineObserver {
     PlacedReturns plain = *scan.returns;
     plain.phantom.clear();
     trusting_->add(*frame_, plain);
-    obstacles_ = obstaclesOf(*scan.returns, frame_->ego.T_world_ego, *scan_labels_);
-    front_ = scan.returns->vehicle_front, rear_ = scan.returns->vehicle_rear;
-    truth_.add(frame_->stamp, frame_->stamp - *first_, obstacles_, speeds_);
-    judged_ = frame_->stamp;
+    JudgedScan judged{frame_->stamp, {}, {}, {}};
+    judged.obstacles = obstaclesOf(*scan.returns, frame_->ego.T_world_ego, *scan_labels_);
+    truth_.add(frame_->stamp, frame_->stamp - *first_, judged.obstacles, speeds_);
+    judgeWay(frame_->ego, *scan.returns, judged);
+    waiting_.push_back(std::move(judged));
   }
 
   void onOutput(const Scene& scene) override {
-    if (!judged_ || scene.stamp != *judged_ || !scene.path) return;
+    while (!waiting_.empty() && waiting_.front().stamp < scene.stamp) waiting_.pop_front();
+    if (waiting_.empty() || waiting_.front().stamp != scene.stamp || !scene.path) return;
     if (counts.scans > 0) counts.minutes += (scene.stamp - last_) / 60;
     last_ = scene.stamp;
     ++counts.scans;
-    judgeStops(scene);
-    for (const SceneObject& object : scene.objects) judgeTrack(object);
+    const JudgedScan& judged = waiting_.front();
+    for (std::size_t k = 0; k < kMonitorCount; ++k)
+      counts.stops[k].add(scene.stamp, k < judged.stops.size() ? judged.stops[k] : scene.path->stop,
+                          judged.real);
+    for (const SceneObject& object : scene.objects) judgeTrack(object, judged.obstacles);
   }
 
   void finish() {
@@ -103,34 +117,31 @@ class SafetyObserver : public PipelineObserver {
   SafetyCounts counts;
 
  private:
-  void judgeStops(const Scene& scene) {
+  /// What is in the way, and which of the monitors without tracks stop for it.
+  void judgeWay(const EgoState& ego, const PlacedReturns& returns, JudgedScan& judged) {
     StopRule rule;
-    const double speed = scene.ego.velocity.norm();
-    rule.corridor = drivenCorridor(scene.ego.T_world_ego, scene.ego.velocity, scene.ego.yaw_rate,
-                                   front_, rear_, stop_);
+    rule.corridor = drivenCorridor(ego.T_world_ego, ego.velocity, ego.yaw_rate,
+                                   returns.vehicle_front, returns.vehicle_rear, stop_);
     rule.params = stop_;
-    rule.t = scene.stamp - *first_;
-    rule.speed = speed;
+    rule.t = judged.stamp - *first_;
+    rule.speed = ego.velocity.norm();
     rule.speeds = &speeds_;
     const auto aheadOf = [](const FreeDistance& free) {
       return free.blocked ? Ahead{free.distance, free.place} : Ahead{};
     };
-    const InTheWay real = truth_.judge(scene.stamp, rule);
-    const bool stops[] = {rule.within(nearestCluster(obstacles_, rule.corridor)) > 0,
-                          rule.within(aheadOf(trusting_->pathAhead(scene.ego).free)) > 0,
-                          scene.path->stop};
-    for (std::size_t k = 0; k < kMonitorCount; ++k)
-      counts.stops[k].add(scene.stamp, stops[k], real);
+    judged.real = truth_.judge(judged.stamp, rule);
+    judged.stops = {rule.within(nearestCluster(judged.obstacles, rule.corridor)) > 0,
+                    rule.within(aheadOf(trusting_->pathAhead(ego).free)) > 0};
   }
 
-  void judgeTrack(const SceneObject& object) {
+  void judgeTrack(const SceneObject& object, const LabeledObstacles& obstacles) {
     int phantoms = 0, surfaces = 0;
-    for (std::size_t i = 0; i < obstacles_.place.size(); ++i) {
+    for (std::size_t i = 0; i < obstacles.place.size(); ++i) {
       const Vector2 p =
-          rotate2(-object.yaw, obstacles_.place[i].head<2>() - Vector2(object.position.head<2>()));
+          rotate2(-object.yaw, obstacles.place[i].head<2>() - Vector2(object.position.head<2>()));
       if (std::abs(p.x()) > object.length / 2 + kGrow) continue;
       if (std::abs(p.y()) > object.width / 2 + kGrow) continue;
-      phantoms += obstacles_.phantom[i], surfaces += obstacles_.surface[i];
+      phantoms += obstacles.phantom[i], surfaces += obstacles.surface[i];
     }
     on_surfaces_[object.id] += surfaces > phantoms;
     if (phantoms < kPhantomReturns || phantoms <= surfaces) return;
@@ -146,10 +157,8 @@ class SafetyObserver : public PipelineObserver {
   std::optional<Stamp> first_;
   std::optional<SensorFrame> frame_;
   std::optional<std::vector<std::uint16_t>> scan_labels_;
-  LabeledObstacles obstacles_;
-  double front_ = 0, rear_ = 0;
   WayTruth truth_;
-  std::optional<Stamp> judged_;
+  std::deque<JudgedScan> waiting_;
   Stamp last_;
   std::map<std::uint64_t, std::size_t> on_phantoms_, on_surfaces_, sure_;
 };
@@ -176,7 +185,6 @@ SafetyCounts countLog(const std::string& log, const SafetyOptions& options,
   settings.push_back(fmt::format("run.seed={}", seed));
   PipelineSetup setup = PipelineSetup::fromFile(options.config, settings);
   if (!setup.grid.enabled) throw ConfigError(options.config + ": [grid] enabled must be true");
-  setup.run.output_lag = setup.model.history = 0;  // a stop cannot wait
   SafetyObserver observer(log, setup);
   passLog(log, std::move(setup), options.seconds, observer);
   observer.finish();

@@ -2,32 +2,38 @@
 # What the project promises of bad weather, measured again: a line a row with its figure, what is wanted, and "met", "MISSED"
 # or "not measured". Ends with 1 where a row is not met or not measured. Everything but the recordings is simulated, and the
 # weather on recordings is, too; a row says so.
-#   tests/bench/weather_promises.sh [-o OUT] [-s "1 2 3"] [ROW ...]
+#   tests/bench/weather_promises.sh [-o OUT] [-s "1 2 3"] [-l LAG] [ROW ...]
 #     ROW  health spray exhaust phantoms blown_snow rain snow camera_radar clutter fog town street realism; without one, all
 #     -s   seeds of the simulated scenes and of the weather; "own": as the scene's INI has it [own]
+#     -l   scenes LAG seconds late, by [run] output_lag, for logs that are processed afterwards [0: at once]: for tracks. Stops,
+#          health, rates, realism and camera_radar are those at once
 # Logs and runs stay in OUT [out/weather_promises]: what is there is not made again. Delete OUT/runs after a change of the tracker.
 # PERCEPTION_BIN: programs [build/bin]. PERCEPTION_BENCH_BIN: blind_sensor_study [build-bench/bin]. PERCEPTION_SHARED: folder
 # with data/ [../shared]; RECORDINGS: more clear recordings for `health`, INI=LOG each.
 set -euo pipefail
 cd "$(dirname "$(readlink -f "$0")")/../.."
 readonly rows="health spray exhaust phantoms blown_snow rain snow camera_radar clutter fog town street realism"
-out=out/weather_promises seeds=own
-while getopts o:s:h option; do
+out=out/weather_promises seeds=own lag=0
+while getopts o:s:l:h option; do
   case $option in
     o) out=$OPTARG ;;
     s) seeds=$OPTARG ;;
+    l) lag=$OPTARG ;;
     h) sed -n '2,/^set/{/^set/d;s/^# \{0,1\}//p}' "$0"; exit ;;
     *) exit 64 ;;
   esac
 done
 shift $((OPTIND - 1))
-readonly out seeds bin=${PERCEPTION_BIN:-build/bin} bench=${PERCEPTION_BENCH_BIN:-build-bench/bin}
+readonly out seeds lag bin=${PERCEPTION_BIN:-build/bin} bench=${PERCEPTION_BENCH_BIN:-build-bench/bin}
 readonly data=${PERCEPTION_SHARED:-../shared}/data
+runs=$out/runs
+[[ $lag == 0 ]] || runs=$out/runs_late_$lag
+readonly runs
 read -ra chosen <<<"${*:-$rows}"
 for row in "${chosen[@]}"; do
   [[ " $rows " == *" $row "* ]] || { echo "weather_promises.sh: no row \"$row\"; there are: $rows" >&2; exit 64; }
 done
-mkdir -p "$out/logs" "$out/runs"
+mkdir -p "$out/logs" "$runs"
 
 # Warnings (exit code 3) are no failure.
 quietly() {
@@ -54,8 +60,8 @@ scene() {
 
 # track LOG RUN INI SENSORS settings...: sets $run
 track() {
-  local in=$1 ini=$3 sensors=$4 set=() s
-  run=$out/runs/$2
+  local in=$1 ini=$3 sensors=$4 set=(--set "run.output_lag=$lag") s
+  run=$runs/$2
   shift 4
   [[ ! -f $run/done.json ]] || return 0
   for s in "$@"; do set+=(--set "$s"); done
@@ -100,9 +106,9 @@ health() {
 safety() {
   local name=$1 seed=$2
   scene "$name" "$seed"
-  [[ -f $out/runs/safety_${name}_$seed/report.md ]] || quietly "$bin/perception-study" safety -i "$log" -c ini/kitti.ini \
-    --set run.sensors=L -o "$out/runs/safety_${name}_$seed"
-  studies+=("$out/runs/safety_${name}_$seed")
+  [[ -f $runs/safety_${name}_$seed/report.md ]] || quietly "$bin/perception-study" safety -i "$log" -c ini/kitti.ini \
+    --set run.sensors=L --set "run.output_lag=$lag" -o "$runs/safety_${name}_$seed"
+  studies+=("$runs/safety_${name}_$seed")
 }
 
 # 2. False stops.
@@ -148,7 +154,7 @@ rates() {
   local row=$1 seed found=()
   kitti0000 || { absent "$row" "$data/kitti_lidar_seq0000"; return; }
   for seed in $seeds; do
-    local to=$out/runs/weather_$seed
+    local to=$runs/weather_$seed
     [[ $seed == own ]] && seed=1
     [[ -f $to/report.md ]] || quietly "$bin/perception-study" weather --seed "$seed" -o "$to" \
       --through "ini/kitti.ini=$log" ini/kitti.ini=ini/scenarios/slush.ini
@@ -164,9 +170,9 @@ snow() { rates snow; }
 camera_radar() {
   local seed
   seed=${seeds//own/1}
-  [[ -f $out/runs/encounters/pooled_snow_rain/report.json ]] || SEEDS=$seed WEATHERS=snow_rain SETS=C+R CONFIG=ini/skynet_shapes.ini \
-    PERCEPTION_BIN=$bin quietly tests/bench/paper/scenarios.sh "$out/runs/encounters"
-  judge camera_radar "$out/runs/encounters/pooled_snow_rain/report.json"
+  [[ -f $runs/encounters/pooled_snow_rain/report.json ]] || SEEDS=$seed WEATHERS=snow_rain SETS=C+R CONFIG=ini/skynet_shapes.ini \
+    PERCEPTION_BIN=$bin quietly tests/bench/paper/scenarios.sh "$runs/encounters"
+  judge camera_radar "$runs/encounters/pooled_snow_rain/report.json"
 }
 
 # 9. Clutter of the roof lidar and of the radars configured ten times too low and too high; judged from 20 s on.
@@ -232,8 +238,8 @@ realism() {
   [[ -f $wads || -d $data/wads_snow ]] || { absent realism "$data/wads_snow"; return; }
   [[ -f $wads ]] || quietly "$bin/perception-import" wads --dir "$data/wads_snow" -o "$wads"
   [[ -f $log ]] || quietly "$bin/perception-simulate" weather -i "$clear" -c ini/weather/snow_2.5_sizes.ini -o "$log" --seed 1
-  [[ -f $out/runs/realism/report.md ]] || quietly "$bin/perception-study" snow-realism -i "$wads" "$log" -o "$out/runs/realism"
-  judge realism "$out/runs/realism"
+  [[ -f $runs/realism/report.md ]] || quietly "$bin/perception-study" snow-realism -i "$wads" "$log" -o "$runs/realism"
+  judge realism "$runs/realism"
 }
 
 python3 tests/bench/weather_promises.py --head
