@@ -161,9 +161,9 @@ void RunParams::visit(ParamVisitor& v) {
          "scenes at its scans; empty: the first lidar in use, else the first sensor");
   v.real("output_rate", output_rate, {0, 1000}, "Hz",
          "scenes at a fixed rate instead; 0: at scans; --rate wins");
-  v.expert();
   v.real("output_lag", output_lag, {0, 10}, "s",
-         "lag of fixed-lag smoothing of the scenes; 0: none");
+         "scenes so much late, with what came after their instant; 0: at once");
+  v.expert();
   v.real("reorder_window", reorder_window, {0, 10}, "s", "largest delay of an observation");
   v.boolean("write_measurements", write_measurements,
             "write the filter's input to measurements.csv, scans.csv and sensors.csv; "

@@ -37,7 +37,7 @@ struct RunParams {
   /// first sensor.
   std::string output_sensor;
   double output_rate = 0;       ///< [Hz] scenes at a fixed rate instead; 0: at scans
-  double output_lag = 0;        ///< [s] lag of fixed-lag smoothing (method.md 5.17); 0: none
+  double output_lag = 0;        ///< [s] by which scenes are late (method.md 5.17); 0: at once
   double reorder_window = 0.2;  ///< [s] largest delay of an observation (method.md 1.2)
   double sensor_timeout = 1;    ///< [s] without frames after which a sensor is lost; assumed
   double clock_jump =
