@@ -129,7 +129,8 @@ Track smoothedBefore(const Track& filtered, const Track& newer, const FilterMode
   track.id = newer.id;
   track.birth = newer.birth;
   track.phantom = newer.phantom;  // the cause stays the same
-  track.hits = newer.hits, track.missed = newer.missed;  // what is known of it by now
+  // What is known of it by now.
+  track.hits = newer.hits, track.missed = newer.missed;
   track.height = newer.height;
   if (dt <= 0) {
     track.bank = newer.bank;
