@@ -11,10 +11,10 @@ namespace perception {
 /// The distinct tracks of all hypotheses before and after prediction to a scan.
 struct ScanTracks {
   std::vector<TrackHandle> before;
-  std::vector<Track> predicted;             ///< to the scan's stamp; empty unless touched
-  std::vector<char> touched;                ///< may be in view: predicted and scored
-  std::vector<TrackIndices> of_hypothesis;  ///< by distinct hypothesis
-  std::vector<const Hypothesis*> hypotheses;
+  std::vector<Track> predicted;               ///< to the scan's stamp; empty unless touched
+  std::vector<char> touched;                  ///< may be in view: predicted and scored
+  std::vector<TrackIndices> of_hypothesis;    ///< by distinct hypothesis
+  std::vector<const Hypothesis*> hypotheses;  ///< the distinct ones
 };
 
 /// Pass 4: the updated tracks of one scan, computed once per distinct (track, cause) that some
