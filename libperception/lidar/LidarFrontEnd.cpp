@@ -9,6 +9,7 @@
 #include "libperception/lidar/LidarMeasurements.h"
 #include "libperception/lidar/classification/JudgedClusters.h"
 #include "libperception/lidar/ground/SplitGround.h"
+#include "libperception/lidar/outline/RadialMotion.h"
 #include "libperception/lidar/segments/LooseReturns.h"
 #include "libperception/lidar/two_spacings/Overlaps.h"
 
@@ -232,6 +233,9 @@ void LidarFrontEnd::fill(const SensorFrame& frame, MeasurementScan& scan) const 
     m.detection = static_cast<int>(scan.measurements.size());
     scan.measurements.push_back(std::move(m));
   };
+  std::optional<RadialMotion> motion;
+  if (frame.before && !found.judged.empty())
+    motion.emplace(*frame.before, found, frame.ego, frame.stamp);
   std::vector<std::optional<Measurement>> judged(found.judged.size());
   parallelFor(judged.size(), [&](std::size_t k) {
     const JudgedCluster& cluster = found.judged[k];
@@ -240,6 +244,7 @@ void LidarFrontEnd::fill(const SensorFrame& frame, MeasurementScan& scan) const 
     describeCluster(found.x, found.y, found.above, outline);
     if (!reached(outline.hull)) return;
     Measurement& m = judged[k].emplace(measurementOf(context, cluster, std::move(outline)));
+    if (motion) m.radial_speed = motion->of(cluster.points);
     if (cluster.cause > kLikelyCause)
       m.phantom = PhantomLook{cluster.cause, std::min(cluster.phantom, cluster.cause),
                               cluster.looks_phantom};

@@ -52,6 +52,14 @@ struct MeasuredHeading {
   double flip_persistence = 0;
 };
 
+/// What a range rate, or the ranges of two scans, say about the velocity: the component along the line of sight and, where the
+/// sensor configuration bounds it, the spread of the component across the line of sight.
+struct RadialSpeed {
+  Vector2 direction = Vector2::UnitX();  ///< unit vector away from the sensor, world frame
+  ScalarEstimate along;                  ///< value [m/s] and variance [m^2/s^2]
+  std::optional<double> across_sigma;    ///< [m/s]; if empty, that of the class is used
+};
+
 /// What the shape of a cluster says of whether it is a phantom (method.md 5.19).
 struct PhantomLook {
   double cause = 0;        ///< [0, 1] P(something makes phantoms at its place), above 0
@@ -80,6 +88,8 @@ struct Measurement {
   std::optional<ScalarEstimate> height;  ///< [m] lowest to highest point
   std::optional<PartialBox> sides;
   std::optional<MeasuredHeading> heading;  ///< used by classes with a heading
+  /// Of a lidar's cluster, by two scans: for objects whose velocity is not known yet.
+  std::optional<RadialSpeed> radial_speed;
   int detection = -1;                      ///< index of the detection in its frame
 };
 

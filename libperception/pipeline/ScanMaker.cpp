@@ -69,7 +69,12 @@ MeasurementScan ScanMaker::measure(std::size_t sensor, SensorFrame& frame) {
   {
     const auto scope = timing_.stage(setup_.sensors[sensor].params.kind.c_str());
     if (const auto& preparation = stages_[sensor].preparation) preparation->apply(frame);
+    frame.before = stages_[sensor].before;
     scan = setup_.sensors[sensor].front_end->extract(frame);
+  }
+  if (scan.returns) {
+    stages_[sensor].before = std::make_shared<const EarlierScan>(
+        EarlierScan{frame.stamp, frame.ego.T_world_ego, scan.returns});
   }
   if (trust) addToLedger(sensor, frame, *trust, scan);
   if (scan.occlusion) {
@@ -83,8 +88,10 @@ MeasurementScan ScanMaker::measure(std::size_t sensor, SensorFrame& frame) {
 
 void ScanMaker::restart() {
   occlusion_.reset();
-  for (const Stages& stages : stages_)
+  for (Stages& stages : stages_) {
     if (stages.preparation) stages.preparation->restart();
+    stages.before.reset();
+  }
 }
 
 std::vector<std::string> ScanMaker::learned() const {

@@ -35,6 +35,7 @@ class ScanMaker {
     std::unique_ptr<GroundEstimator> ground;  ///< null: this sensor does not give the ground plane
     std::unique_ptr<PointFilter> weather;     ///< null: trust 1 for every return
     std::unique_ptr<FramePreparation> preparation;  ///< null: none
+    std::shared_ptr<const EarlierScan> before;      ///< of a lidar; null: none
   };
 
   const PipelineSetup& setup_;

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "libperception/core/math/Angle.h"
 #include "libperception/core/math/Chi2.h"
 #include "libperception/core/math/KalmanUpdate.h"
 #include "libperception/core/math/LogMath.h"
@@ -85,6 +86,34 @@ void applyRadialSpeed(const RadialSpeed& seen, ClassFilter& f) {
   measure(seen.direction, seen.along.mean, seen.along.variance);
   if (seen.across_sigma)
     measure({-seen.direction.y(), seen.direction.x()}, 0, *seen.across_sigma * *seen.across_sigma);
+}
+
+/// Velocity of a filter by what was measured of it; its modes become likelier as they fit.
+void updateVelocity(const RadialSpeed& seen, ClassFilter& f) {
+  const auto update = [&](Vector4& x, Matrix4& P) {
+    Eigen::RowVector4d h(0, 0, seen.direction.x(), seen.direction.y());
+    double expected = h * x;
+    if (f.oriented) {
+      const Vector2 ahead(std::cos(x[3]), std::sin(x[3]));
+      const double along = seen.direction.dot(ahead);
+      h << 0, 0, along, x[2] * seen.direction.dot(Vector2(-ahead.y(), ahead.x()));
+      expected = along * x[2];
+    }
+    const double log_density =
+        josephUpdate<4>(seen.along.mean - expected, seen.along.variance, h, x, P);
+    if (f.oriented) x[3] = wrapAngle(x[3]);
+    return log_density;
+  };
+  if (f.modes.empty()) {
+    update(f.x, f.P);
+    return;
+  }
+  std::vector<double> log_mode;
+  for (ModeFilter& m : f.modes) log_mode.push_back(m.log_probability + update(m.x, m.P));
+  logNormalize(log_mode);
+  for (std::size_t i = 0; i < log_mode.size(); ++i)
+    f.modes[i].log_probability = std::max(log_mode[i], -14.0);
+  combineModes(f);
 }
 
 /// The class's filter from one measurement. Wheeled objects start without heading unless the box
@@ -197,6 +226,7 @@ Track hitTrack(Track predicted, const TrackLikelihoods& row, const PairLikelihoo
   const PositionOnlyModel* place = row.predictions.empty() ? scan.model->positionOnly() : nullptr;
   const auto axes_seen = place ? 2 : residual(*scan.model, m, m.z).size();
   const double lost = lostNis(axes_seen);
+  const bool young = track.hits[modalityIndex(scan.modality)] == 2;
   for (ClassId j = 0; j < model.classes.size(); ++j) {
     const ObjectClass& c = model.classes[j];
     const auto i = static_cast<std::size_t>(j);
@@ -217,6 +247,7 @@ Track hitTrack(Track predicted, const TrackLikelihoods& row, const PairLikelihoo
       } else {
         const Kinematics k = kinematicsOf(c, f);
         updateClassFilter(innovationOf(f, k, row.predictions[i], m, *scan.model), f);
+        if (c.motion->moves && m.radial_speed && young) updateVelocity(*m.radial_speed, f);
         settleSpeeds(c, f);
       }
       if (drives) correctWay(expected, f);

@@ -1,6 +1,7 @@
 #pragma once
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
@@ -10,6 +11,7 @@
 #include "libperception/core/Frames.h"
 #include "libperception/core/Time.h"
 #include "libperception/measurement/Modality.h"
+#include "libperception/measurement/frames/EarlierScan.h"
 #include "libperception/measurement/frames/PhantomCauses.h"
 
 namespace perception {
@@ -143,6 +145,7 @@ struct SensorFrame {
   Pose3 T_ego_sensor = Pose3::Identity();
   GroundPlane ground;
   PhantomCauses causes;  ///< of phantoms at this instant; by default none
+  std::shared_ptr<const EarlierScan> before;  ///< of a lidar; null: none
   std::variant<LidarCloud, ObjectDetections, RadarReturns, CameraImage> data;
 
   Pose3 T_world_sensor() const { return ego.T_world_ego * T_ego_sensor; }

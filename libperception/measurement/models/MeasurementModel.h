@@ -37,14 +37,6 @@ struct AxisPrediction {
   bool defined = false;
 };
 
-/// What a range rate says about the velocity: the component along the line of sight and, where the
-/// sensor configuration bounds it, the spread of the component across the line of sight.
-struct RadialSpeed {
-  Vector2 direction = Vector2::UnitX();  ///< unit vector away from the sensor, world frame
-  ScalarEstimate along;                  ///< value [m/s] and variance [m^2/s^2]
-  std::optional<double> across_sigma;    ///< [m/s]; if empty, that of the class is used
-};
-
 /// Initial state of a new object of one class, computed from one measurement. World frame.
 struct BirthState {
   Vector2 position = Vector2::Zero();        ///< [m] center of the object

@@ -14,6 +14,7 @@ constexpr double kLeastSpeed = 5;    // [m/s] of a vehicle with a wake
 constexpr double kWakeExists = 0.9;  // of its track
 constexpr double kLeastAge = 0.5;    // [s] of its track
 constexpr int kLeastHits = 4;
+constexpr double kKnownSpeed = 1.5;        // [m/s] deviation of a speed that needs neither
 constexpr double kLeastProbability = 0.5;  // of being a vehicle
 constexpr double kWakeMemory = 10;         // [s] of phantoms seen, as of clutter
 constexpr double kWide = 1000;             // [m^2] of wakes without a phantom, to begin with
@@ -37,9 +38,8 @@ Vector2 velocityOf(const Track& track, const ClassTable& classes) {
 /// The vehicle of a track that has a wake; empty: it has none.
 std::optional<VehicleFootprint> vehicleOf(const Track& track, const ClassTable& classes,
                                           Stamp stamp) {
-  if (track.real() < kWakeExists || stamp - track.birth < kLeastAge ||
-      std::accumulate(track.hits.begin(), track.hits.end(), 0) < kLeastHits)
-    return std::nullopt;
+  const int hits = std::accumulate(track.hits.begin(), track.hits.end(), 0);
+  if (track.real() < kWakeExists || hits < 2) return std::nullopt;
   const ClassId best = track.likeliestClass();
   const auto i = static_cast<std::size_t>(best);
   if (classes[best].shape != ObjectShape::kVehicle ||
@@ -49,6 +49,12 @@ std::optional<VehicleFootprint> vehicleOf(const Track& track, const ClassTable& 
   const Vector2 velocity = velocityOf(track, classes);
   const double speed = velocity.norm();
   if (speed < kLeastSpeed) return std::nullopt;
+  if (stamp - track.birth < kLeastAge || hits < kLeastHits) {
+    const Matrix4 J = kinematicsOf(classes[best], f).J.topRows<4>();
+    const Matrix2 P = (J * f.P * J.transpose()).bottomRightCorner<2, 2>();
+    const Vector2 ahead = velocity / speed;
+    if (ahead.dot(P * ahead) > kKnownSpeed * kKnownSpeed) return std::nullopt;
+  }
   VehicleFootprint v;
   v.stamp = stamp;
   v.along = velocity / speed, v.speed = speed;
