@@ -241,10 +241,13 @@ void LidarFrontEnd::fill(const SensorFrame& frame, MeasurementScan& scan) const 
     const JudgedCluster& cluster = found.judged[k];
     Cluster outline;
     outline.points = cluster.points;
+    const std::optional<MovingCluster> moving =
+        motion ? motion->of(cluster.points) : std::nullopt;
+    if (moving && !moving->behind_cloud.empty()) outline.points = moving->behind_cloud;
     describeCluster(found.x, found.y, found.above, outline);
     if (!reached(outline.hull)) return;
     Measurement& m = judged[k].emplace(measurementOf(context, cluster, std::move(outline)));
-    if (motion) m.radial_speed = motion->of(cluster.points);
+    if (moving) m.radial_speed = moving->speed;
     if (cluster.cause > kLikelyCause)
       m.phantom = PhantomLook{cluster.cause, std::min(cluster.phantom, cluster.cause),
                               cluster.looks_phantom};

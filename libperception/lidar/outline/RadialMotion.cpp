@@ -31,6 +31,12 @@ constexpr double kLeastDirections = 5;   // that agree
 constexpr double kClearly = 1.3;         // times as many as of any other way
 constexpr double kSteepest = 0.5;        // [-] of the surface against the line of sight
 
+// What hangs before a surface that moved, as spray before the rear of a car (assumed).
+constexpr double kSurfaceDepth = 0.4, kBeforeLayer = 0.2;  // [m] depth of the surface, and before it
+constexpr double kLeastOfCloud = 0.1;               // of the cluster's returns
+constexpr std::size_t kCloudToOwn = 2;              // times as many as of its own
+constexpr double kOutermost = 0.03, kBeyond = 0.1;  // share of the surface's returns; [m]
+
 std::size_t azimuthBinOf(float x, float y) {
   const auto turn = fastAtan2(x, y) * static_cast<float>(1 / kTwoPi) + 1;
   return static_cast<std::size_t>(turn * static_cast<float>(kAzimuthBins)) % kAzimuthBins;
@@ -48,6 +54,50 @@ struct LineOfRanges {
     return spread < n * 0.1 * 0.1 ? 0 : (yr - y * r / n) / spread;
   }
 };
+
+/// A return of a cluster.
+struct Place {
+  double across = 0, range = 0;          ///< [m] to the left of its middle, from the sensor
+  bool judged = false, agrees = false;   ///< seen in the scan before, by the same way
+};
+
+/// The returns of the surface that moved and of what lies behind it, if a cloud that did not hangs
+/// before it; empty: none does.
+std::vector<std::uint32_t> behindCloud(const std::vector<Place>& places, double slope,
+                                       const std::vector<std::uint32_t>& points) {
+  std::vector<double> depths, across;
+  for (const Place& p : places)
+    if (p.agrees) depths.push_back(p.range - slope * p.across);
+  std::sort(depths.begin(), depths.end());
+  // The layer that holds most of them.
+  std::size_t best = 0, most = 0;
+  for (std::size_t i = 0, end = 0; i < depths.size(); ++i) {
+    while (end < depths.size() && depths[end] - depths[i] <= kSurfaceDepth) ++end;
+    if (end - i > most) most = end - i, best = i;
+  }
+  if (most == 0) return {};
+  const double nearest = depths[best], farthest = nearest + kSurfaceDepth;
+  std::size_t strange = 0, own = 0;
+  for (const Place& p : places) {
+    const double depth = p.range - slope * p.across;
+    if (p.agrees && depth >= nearest && depth <= farthest) across.push_back(p.across);
+    if (p.judged && depth < nearest - kBeforeLayer) ++(p.agrees ? own : strange);
+  }
+  if (strange < kLeastOfCloud * places.size() || strange < own * kCloudToOwn) return {};
+  std::sort(across.begin(), across.end());
+  const auto quantile = [&](double q) {
+    return across[static_cast<std::size_t>(q * static_cast<double>(across.size() - 1))];
+  };
+  const double right = quantile(kOutermost) - kBeyond, left = quantile(1 - kOutermost) + kBeyond;
+  std::vector<std::uint32_t> kept;
+  for (std::size_t k = 0; k < places.size(); ++k) {
+    const Place& p = places[k];
+    if (p.range - slope * p.across >= nearest - kBeforeLayer && p.across >= right &&
+        p.across <= left)
+      kept.push_back(points[k]);
+  }
+  return kept;
+}
 
 }  // namespace
 
@@ -76,7 +126,7 @@ RadialMotion::RadialMotion(const EarlierScan& before, const LidarDetections& now
   for (std::size_t i = 0; i < placed.size(); ++i) before_[next[bins[i]]++] = placed[i];
 }
 
-std::optional<RadialSpeed> RadialMotion::of(const std::vector<std::uint32_t>& points) const {
+std::optional<MovingCluster> RadialMotion::of(const std::vector<std::uint32_t>& points) const {
   if (points.size() < kFewestMoving || before_.empty()) return {};
   const Vector2 sensor = now_.points.sensor.head<2>();
   std::vector<Return> seen;
@@ -170,24 +220,35 @@ std::optional<RadialSpeed> RadialMotion::of(const std::vector<std::uint32_t>& po
   const double way = sum / weight;
   if (std::abs(way) < kLeastMoving * dt_) return {};
 
+  // Each return of now, and whether one of before agrees with it.
   LineOfRanges line;
-  for (std::size_t c = 0; c < now.size(); ++c)
-    for (std::size_t i = 0; i < now[c].n; ++i)
-      for (std::size_t j = 0; j < then[c].n; ++j)
-        if (std::abs(now[c].range[i] - then[c].range[j] - way) < 1.5 * kWayStep)
-          line.add((static_cast<int>(c) % kFlowColumns - kFlowColumns / 2 + 0.5) * kCellWidth,
-                   now[c].range[i]);
-  const double slope = line.slope();
+  std::vector<Place> places(seen.size());
+  for (std::size_t k = 0; k < seen.size(); ++k) {
+    const Return& r = seen[k];
+    Place& p = places[k];
+    p.across = left.x() * r.x + left.y() * r.y, p.range = r.range;
+    const int c = cellOf(r);
+    if (c < 0 || then[static_cast<std::size_t>(c)].n == 0) continue;
+    const InCell& earlier = then[static_cast<std::size_t>(c)];
+    p.judged = true;
+    p.agrees = std::any_of(
+        earlier.range.begin(), earlier.range.begin() + static_cast<std::ptrdiff_t>(earlier.n),
+        [&](float e) { return std::abs(r.range - e - way) < 1.5 * kWayStep; });
+    if (p.agrees) line.add(p.across, p.range);
+  }
+  const double slope = line.n > 0 ? line.slope() : 0;
   if (std::abs(slope) > kSteepest) return {};
+  MovingCluster moving;
+  moving.behind_cloud = behindCloud(places, slope, points);
   const double length = std::hypot(1, slope);
   const Vector2 normal = (u - slope * left) / length;
-  RadialSpeed speed;
+  RadialSpeed& speed = moving.speed;
   speed.direction =
       (ego_.T_world_ego.linear() * Vector3(normal.x(), normal.y(), 0)).head<2>().normalized();
   const double along = way / dt_ / length;
   const double approach = along - ego_.velocity.dot(speed.direction);
   speed.along = {along, std::pow(kWaySigma / dt_, 2) + std::pow(kTimeError * approach, 2)};
-  return speed;
+  return moving;
 }
 
 }  // namespace perception

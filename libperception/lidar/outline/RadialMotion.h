@@ -10,6 +10,14 @@
 
 namespace perception {
 
+/// A cluster that has moved since the scan before.
+struct MovingCluster {
+  RadialSpeed speed;  ///< along the normal of the surface that it shows
+  /// Indices into the obstacles of the surface and of what lies behind it, where a cloud that does
+  /// not move alike hangs before it. Empty: none does.
+  std::vector<std::uint32_t> behind_cloud;
+};
+
 /// How fast clusters move along the line of sight, by the ranges in which two scans of one lidar
 /// show them in the same directions (method.md 8.11). What is rigid has moved by the same way in
 /// all of them; flakes, drops and leaves have not.
@@ -19,10 +27,10 @@ class RadialMotion {
   RadialMotion(const EarlierScan& before, const LidarDetections& now, const EgoState& ego,
                Stamp stamp);
 
-  /// The velocity of a cluster along the normal of the surface that it shows. Empty: too few
-  /// directions tell, they disagree, or the surface is seen at a grazing angle, along which it
+  /// The motion of a cluster. Empty: it is slow, too few
+  /// directions tell, they disagree, or its surface is seen at a grazing angle, along which it
   /// could move unseen. `points`: indices into the obstacles.
-  std::optional<RadialSpeed> of(const std::vector<std::uint32_t>& points) const;
+  std::optional<MovingCluster> of(const std::vector<std::uint32_t>& points) const;
 
  private:
   struct Return {
