@@ -88,6 +88,29 @@ void applyRadialSpeed(const RadialSpeed& seen, ClassFilter& f) {
     measure({-seen.direction.y(), seen.direction.x()}, 0, *seen.across_sigma * *seen.across_sigma);
 }
 
+/// Log likelihood of a radial speed for an object whose velocity is that of the filter, [s/m].
+double logRadialSpeed(const ObjectClass& c, const ClassFilter& f, const RadialSpeed& seen) {
+  constexpr double kError = 0.05, kSpeeds = 90;  // of another thing's; [m/s] it may have (assumed)
+  constexpr double kStands = 0.3;                // [m/s] of what does not move: leaves, errors
+  const auto density = [&](const Vector4& x, const Matrix4& P) {
+    Vector2 h = seen.direction;
+    double expected = 0, variance = kStands * kStands;
+    if (c.motion->moves && f.oriented) {
+      const double along = h.dot(Vector2(std::cos(x[3]), std::sin(x[3])));
+      expected = along * x[2], variance = along * along * P(2, 2);
+    } else if (c.motion->moves) {
+      expected = h.dot(x.tail<2>()), variance = h.dot(P.bottomRightCorner<2, 2>() * h);
+    }
+    variance += seen.along.variance;
+    const double y = seen.along.mean - expected;
+    return std::exp(-0.5 * y * y / variance) / std::sqrt(kTwoPi * variance);
+  };
+  double p = 0;
+  for (const ModeFilter& m : f.modes) p += std::exp(m.log_probability) * density(m.x, m.P);
+  if (f.modes.empty()) p = density(f.x, f.P);
+  return std::log((1 - kError) * p + kError / kSpeeds);
+}
+
 /// Velocity of a filter by what was measured of it; its modes become likelier as they fit.
 void updateVelocity(const RadialSpeed& seen, ClassFilter& f) {
   const auto update = [&](Vector4& x, Matrix4& P) {
@@ -239,6 +262,7 @@ Track hitTrack(Track predicted, const TrackLikelihoods& row, const PairLikelihoo
     const bool is_lost = !(pair.nis[i] < lost);
     std::optional<BirthState> birth;
     if (is_lost || c.motion->has_heading) birth = scan.model->birth(m, j, scan.state);
+    if (m.radial_speed && young) track.log_class[i] += logRadialSpeed(c, f, *m.radial_speed);
     const Vector2 expected = f.x.head<2>();
     const bool drives = f.oriented && movesSurely(f);
     if (!is_lost) {
@@ -314,6 +338,11 @@ Track newTrack(const BirthLikelihood& births, std::size_t measurement, const Mea
       track.bank.emplace_back();
       track.log_class[static_cast<std::size_t>(j)] = kMinusInfinity;
       track.existence = 0;  // no valid state
+    }
+    if (birth && m.radial_speed) {
+      ClassFilter& f = track.bank.back();
+      track.log_class[static_cast<std::size_t>(j)] += logRadialSpeed(c, f, *m.radial_speed);
+      if (c.motion->moves) updateVelocity(*m.radial_speed, f), settleSpeeds(c, f);
     }
     if (birth && m.heading && c.motion->has_heading)
       useHeading(*m.heading, model.params, track.bank.back());

@@ -186,7 +186,6 @@ std::optional<BirthState> FootprintModel::birth(const Measurement& m, ClassId c,
   birth.extent = {object_class.length, object_class.width,
                   object_class.length_sigma * object_class.length_sigma,
                   object_class.width_sigma * object_class.width_sigma};
-  if (object_class.motion->moves) birth.radial_speed = m.radial_speed;
   const Vector2 origin = sensorPosition(sensor);
   if (m.sides && object_class.motion->has_heading) {
     birth.yaw = headingFromBox(*m.sides, object_class);
