@@ -27,8 +27,8 @@ constexpr double kWaySigma = 0.1;        // [m] of a way, with the poses' errors
 /// Of the time between two looks, which is not quite that between the stamps (assumed).
 constexpr double kTimeError = 0.1;
 constexpr double kLeastShare = 0.15;     // of the directions that agree
-constexpr double kLeastDirections = 5;   // that agree
-constexpr double kClearly = 1.3;         // times as many as of any other way
+constexpr double kLeastDirections = 8;   // that agree
+constexpr double kClearly = 1.5;         // times as many as of any other way
 constexpr double kSteepest = 0.5;        // [-] of the surface against the line of sight
 
 // What hangs before a surface that moved, as spray before the rear of a car (assumed).
@@ -209,8 +209,9 @@ std::optional<MovingCluster> RadialMotion::of(const std::vector<std::uint32_t>& 
   double highest = 0, other = 0;
   for (int s = 0; s <= 2 * most; ++s)
     if (about(s) > highest) highest = about(s), best = s;
+  if (std::abs(best - most) * kWayStep < kLeastMoving * dt_) return {};
   for (int s = 0; s <= 2 * most; ++s)
-    if (std::abs(s - best) > 4) other = std::max(other, about(s));
+    if (std::abs(s - best) > 4 || std::abs(s - most) <= 1) other = std::max(other, about(s));
   if (highest < kLeastDirections || highest < kLeastShare * cells || highest < kClearly * other)
     return {};
   double sum = 0, weight = 0;
@@ -218,7 +219,6 @@ std::optional<MovingCluster> RadialMotion::of(const std::vector<std::uint32_t>& 
     sum += votes[static_cast<std::size_t>(s)] * (s - most) * kWayStep,
         weight += votes[static_cast<std::size_t>(s)];
   const double way = sum / weight;
-  if (std::abs(way) < kLeastMoving * dt_) return {};
 
   // Each return of now, and whether one of before agrees with it.
   LineOfRanges line;
