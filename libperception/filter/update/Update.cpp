@@ -111,6 +111,16 @@ double logRadialSpeed(const ObjectClass& c, const ClassFilter& f, const RadialSp
   return std::log((1 - kError) * p + kError / kSpeeds);
 }
 
+/// Whether an oriented filter cannot move so, whatever its speed: its heading is that of a box that
+/// a cloud has stretched.
+bool deniesHeading(const RadialSpeed& seen, const ClassFilter& f) {
+  constexpr double kGate = 9;
+  if (!f.oriented) return false;
+  const Vector2 ahead(std::cos(f.x[3]), std::sin(f.x[3]));
+  const double along = seen.direction.dot(ahead), y = seen.along.mean - along * f.x[2];
+  return y * y > kGate * (along * along * f.P(2, 2) + seen.along.variance);
+}
+
 /// Velocity of a filter by what was measured of it; its modes become likelier as they fit.
 void updateVelocity(const RadialSpeed& seen, ClassFilter& f) {
   const auto update = [&](Vector4& x, Matrix4& P) {
@@ -271,7 +281,13 @@ Track hitTrack(Track predicted, const TrackLikelihoods& row, const PairLikelihoo
       } else {
         const Kinematics k = kinematicsOf(c, f);
         updateClassFilter(innovationOf(f, k, row.predictions[i], m, *scan.model), f);
-        if (c.motion->moves && m.radial_speed && young) updateVelocity(*m.radial_speed, f);
+        if (c.motion->moves && m.radial_speed && young) {
+          if (birth && deniesHeading(*m.radial_speed, f)) {
+            birth->yaw.reset();
+            f = startFilter(c, *birth, model);
+          }
+          updateVelocity(*m.radial_speed, f);
+        }
         settleSpeeds(c, f);
       }
       if (drives) correctWay(expected, f);
