@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 #include <vector>
 
 #include "libperception/core/math/Angle.h"
@@ -63,14 +64,18 @@ void updateClassFilter(const Innovation& innovation, ClassFilter& f) {
       log_mode.push_back(mode.log_probability + gaussianUpdate(y, S, innovation, mode.x, mode.P));
       if (f.oriented) mode.x[3] = wrapAngle(mode.x[3]);
     }
-    logNormalize(log_mode);
-    for (std::size_t i = 0; i < log_mode.size(); ++i) {
-      // A floor of the mode probability lets a mode recover within a few scans.
-      f.modes[i].log_probability = std::max(log_mode[i], kLogLeastMode);
-    }
-    combineModes(f);
+    weighModes(std::move(log_mode), f);
   }
   updateExtentBy(innovation, f.extent);
+}
+
+void weighModes(std::vector<double> log_mode, ClassFilter& f) {
+  logNormalize(log_mode);
+  for (std::size_t i = 0; i < log_mode.size(); ++i) {
+    // A floor of the mode probability lets a mode recover within a few scans.
+    f.modes[i].log_probability = std::max(log_mode[i], kLogLeastMode);
+  }
+  combineModes(f);
 }
 
 void positionUpdate(const Measurement& m, const Matrix2& noise, ClassFilter& f) {

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <utility>
 
-#include "libperception/core/math/Angle.h"
 #include "libperception/core/math/Chi2.h"
 #include "libperception/core/math/KalmanUpdate.h"
 #include "libperception/core/math/LogMath.h"
@@ -16,6 +15,7 @@
 #include "libperception/filter/update/ClassFilterUpdate.h"
 #include "libperception/filter/update/HeadingUpdate.h"
 #include "libperception/filter/update/SizeEvidence.h"
+#include "libperception/filter/update/VelocityUpdate.h"
 #include "libperception/measurement/models/PositionOnlyModel.h"
 #include "libperception/measurement/objects/ExtentUpdate.h"
 
@@ -29,6 +29,10 @@ constexpr double kLostProbability = 1 - 1e-5;
 
 /// A decided class is revoked beyond this probability (one true pair in a hundred).
 constexpr double kSurprisingProbability = 0.99;
+
+/// Detections of a track by a lidar after which its velocity is known well enough (assumed): two
+/// scans of positions tell it, too, and would count twice.
+constexpr int kYoung = 4;
 
 /// Chi-square quantiles by number of axes.
 struct Quantiles {
@@ -77,78 +81,6 @@ bool hasTwoSpeeds(const ObjectClass& c, double log_class, const Measurement& m,
          fastSigma(c) > speedSigma(c, model) && log_class > std::log(kLikely);
 }
 
-/// Initial velocity of a newborn, with the range rate if measured (method.md 4.3).
-void applyRadialSpeed(const RadialSpeed& seen, ClassFilter& f) {
-  const auto measure = [&](const Vector2& u, double speed, double variance) {
-    const Eigen::RowVector4d h(0, 0, u.x(), u.y());
-    josephUpdate<4>(speed - h * f.x, variance, h, f.x, f.P);
-  };
-  measure(seen.direction, seen.along.mean, seen.along.variance);
-  if (seen.across_sigma)
-    measure({-seen.direction.y(), seen.direction.x()}, 0, *seen.across_sigma * *seen.across_sigma);
-}
-
-/// Log likelihood of a radial speed for an object whose velocity is that of the filter, [s/m].
-double logRadialSpeed(const ObjectClass& c, const ClassFilter& f, const RadialSpeed& seen) {
-  constexpr double kError = 0.05, kSpeeds = 90;  // of another thing's; [m/s] it may have (assumed)
-  constexpr double kStands = 0.3;                // [m/s] of what does not move: leaves, errors
-  const auto density = [&](const Vector4& x, const Matrix4& P) {
-    Vector2 h = seen.direction;
-    double expected = 0, variance = kStands * kStands;
-    if (c.motion->moves && f.oriented) {
-      const double along = h.dot(Vector2(std::cos(x[3]), std::sin(x[3])));
-      expected = along * x[2], variance = along * along * P(2, 2);
-    } else if (c.motion->moves) {
-      expected = h.dot(x.tail<2>()), variance = h.dot(P.bottomRightCorner<2, 2>() * h);
-    }
-    variance += seen.along.variance;
-    const double y = seen.along.mean - expected;
-    return std::exp(-0.5 * y * y / variance) / std::sqrt(kTwoPi * variance);
-  };
-  double p = 0;
-  for (const ModeFilter& m : f.modes) p += std::exp(m.log_probability) * density(m.x, m.P);
-  if (f.modes.empty()) p = density(f.x, f.P);
-  return std::log((1 - kError) * p + kError / kSpeeds);
-}
-
-/// Whether an oriented filter cannot move so, whatever its speed: its heading is that of a box that
-/// a cloud has stretched.
-bool deniesHeading(const RadialSpeed& seen, const ClassFilter& f) {
-  constexpr double kGate = 9;
-  if (!f.oriented) return false;
-  const Vector2 ahead(std::cos(f.x[3]), std::sin(f.x[3]));
-  const double along = seen.direction.dot(ahead), y = seen.along.mean - along * f.x[2];
-  return y * y > kGate * (along * along * f.P(2, 2) + seen.along.variance);
-}
-
-/// Velocity of a filter by what was measured of it; its modes become likelier as they fit.
-void updateVelocity(const RadialSpeed& seen, ClassFilter& f) {
-  const auto update = [&](Vector4& x, Matrix4& P) {
-    Eigen::RowVector4d h(0, 0, seen.direction.x(), seen.direction.y());
-    double expected = h * x;
-    if (f.oriented) {
-      const Vector2 ahead(std::cos(x[3]), std::sin(x[3]));
-      const double along = seen.direction.dot(ahead);
-      h << 0, 0, along, x[2] * seen.direction.dot(Vector2(-ahead.y(), ahead.x()));
-      expected = along * x[2];
-    }
-    const double log_density =
-        josephUpdate<4>(seen.along.mean - expected, seen.along.variance, h, x, P);
-    if (f.oriented) x[3] = wrapAngle(x[3]);
-    return log_density;
-  };
-  if (f.modes.empty()) {
-    update(f.x, f.P);
-    return;
-  }
-  std::vector<double> log_mode;
-  for (ModeFilter& m : f.modes) log_mode.push_back(m.log_probability + update(m.x, m.P));
-  logNormalize(log_mode);
-  for (std::size_t i = 0; i < log_mode.size(); ++i)
-    f.modes[i].log_probability = std::max(log_mode[i], -14.0);
-  combineModes(f);
-}
-
 /// The class's filter from one measurement. Wheeled objects start without heading unless the box
 /// shows it.
 ClassFilter startFilter(const ObjectClass& c, const BirthState& birth, const FilterModel& model,
@@ -160,7 +92,7 @@ ClassFilter startFilter(const ObjectClass& c, const BirthState& birth, const Fil
   if (!c.motion->moves) return f;
   const double sigma = speedSigma(c, model);
   f.P(2, 2) = f.P(3, 3) = sigma * sigma;
-  if (birth.radial_speed) applyRadialSpeed(*birth.radial_speed, f);
+  if (birth.radial_speed) updateVelocity(*birth.radial_speed, f);
   startModes(c, f);
   if (two_speeds && f.modes.empty() && !birth.radial_speed && !birth.speed)
     startTwoSpeeds(model.params.fast_births, fastSigma(c), f);
@@ -174,6 +106,18 @@ ClassFilter startFilter(const ObjectClass& c, const BirthState& birth, const Fil
     }
   }
   return f;
+}
+
+/// Velocity of a young filter by the motion of the measured cluster; without a heading that denies
+/// it, from `birth`.
+void moveBy(const RadialSpeed& seen, const ObjectClass& c, std::optional<BirthState> birth,
+            const FilterModel& model, ClassFilter& f) {
+  if (!c.motion->moves) return;
+  if (birth && deniesHeading(seen, f)) {
+    birth->yaw.reset();
+    f = startFilter(c, *birth, model);
+  }
+  updateVelocity(seen, f);
 }
 
 /// Direction of a class's length axis [rad], if known.
@@ -213,15 +157,6 @@ void updateShape(const ObjectClass& c, const Measurement& m, const std::optional
     f.extent = boundedExtent(f.extent, c, m.view.has_value());
 }
 
-/// Log likelihood of the speed: constant up to the class's max_speed, then a Gaussian tail.
-double logSpeed(const ObjectClass& c, const ClassFilter& f, const FilterModel& model) {
-  if (!c.motion->moves || model.params.speed_slack <= 0) return 0;
-  const double speed = f.oriented ? std::abs(f.x[2]) : f.x.tail<2>().norm();
-  const double variance = f.oriented ? f.P(2, 2) : 0.5 * (f.P(2, 2) + f.P(3, 3));
-  const double excess = speed - c.max_speed, slack = model.params.speed_slack * c.max_speed;
-  return excess <= 0 ? 0 : -0.5 * excess * excess / (slack * slack + variance);
-}
-
 /// The length axis [rad] that the likeliest class with a heading gives the object.
 std::optional<double> axisOf(const FilterModel& model, const Track& track) {
   std::optional<double> axis;
@@ -259,14 +194,14 @@ Track hitTrack(Track predicted, const TrackLikelihoods& row, const PairLikelihoo
   const PositionOnlyModel* place = row.predictions.empty() ? scan.model->positionOnly() : nullptr;
   const auto axes_seen = place ? 2 : residual(*scan.model, m, m.z).size();
   const double lost = lostNis(axes_seen);
-  const bool young = track.hits[modalityIndex(scan.modality)] == 2;
+  const bool young = track.hits[modalityIndex(scan.modality)] <= kYoung;
   for (ClassId j = 0; j < model.classes.size(); ++j) {
     const ObjectClass& c = model.classes[j];
     const auto i = static_cast<std::size_t>(j);
     ClassFilter& f = track.bank[track.filterOf(i)];
     if (!track.live(j)) {
       track.log_class[i] +=
-          pair.log_class_evidence[i] + model.params.kinematic_exponent * logSpeed(c, f, model);
+          pair.log_class_evidence[i] + model.params.kinematic_exponent * logSpeed(c, f, model.params);
       continue;
     }
     const bool is_lost = !(pair.nis[i] < lost);
@@ -281,13 +216,7 @@ Track hitTrack(Track predicted, const TrackLikelihoods& row, const PairLikelihoo
       } else {
         const Kinematics k = kinematicsOf(c, f);
         updateClassFilter(innovationOf(f, k, row.predictions[i], m, *scan.model), f);
-        if (c.motion->moves && m.radial_speed && young) {
-          if (birth && deniesHeading(*m.radial_speed, f)) {
-            birth->yaw.reset();
-            f = startFilter(c, *birth, model);
-          }
-          updateVelocity(*m.radial_speed, f);
-        }
+        if (m.radial_speed && young) moveBy(*m.radial_speed, c, birth, model, f);
         settleSpeeds(c, f);
       }
       if (drives) correctWay(expected, f);
@@ -296,7 +225,7 @@ Track hitTrack(Track predicted, const TrackLikelihoods& row, const PairLikelihoo
     }
     updateShape(c, m, birth, track, scan.state, model, f);
     track.log_class[i] +=
-        pair.log_class_evidence[i] + model.params.kinematic_exponent * logSpeed(c, f, model);
+        pair.log_class_evidence[i] + model.params.kinematic_exponent * logSpeed(c, f, model.params);
   }
   faceTheWay(model, track);
   if (m.base_z) scalarUpdate(*m.base_z, track.base_z);
@@ -358,7 +287,8 @@ Track newTrack(const BirthLikelihood& births, std::size_t measurement, const Mea
     if (birth && m.radial_speed) {
       ClassFilter& f = track.bank.back();
       track.log_class[static_cast<std::size_t>(j)] += logRadialSpeed(c, f, *m.radial_speed);
-      if (c.motion->moves) updateVelocity(*m.radial_speed, f), settleSpeeds(c, f);
+      moveBy(*m.radial_speed, c, std::nullopt, model, f);
+      settleSpeeds(c, f);
     }
     if (birth && m.heading && c.motion->has_heading)
       useHeading(*m.heading, model.params, track.bank.back());
