@@ -241,8 +241,7 @@ void LidarFrontEnd::fill(const SensorFrame& frame, MeasurementScan& scan) const 
     const JudgedCluster& cluster = found.judged[k];
     Cluster outline;
     outline.points = cluster.points;
-    const std::optional<MovingCluster> moving =
-        motion ? motion->of(cluster.points) : std::nullopt;
+    const std::optional<MovingCluster> moving = motion ? motion->of(cluster.points) : std::nullopt;
     if (moving && !moving->behind_cloud.empty()) outline.points = moving->behind_cloud;
     describeCluster(found.x, found.y, found.above, outline);
     if (!reached(outline.hull)) return;

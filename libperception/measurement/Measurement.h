@@ -52,8 +52,9 @@ struct MeasuredHeading {
   double flip_persistence = 0;
 };
 
-/// What a range rate, or the ranges of two scans, say about the velocity: the component along the line of sight and, where the
-/// sensor configuration bounds it, the spread of the component across the line of sight.
+/// What a range rate, or the ranges of two scans, say about the velocity: the component along the
+/// line of sight and, where the sensor configuration bounds it, the spread of the component across
+/// the line of sight.
 struct RadialSpeed {
   Vector2 direction = Vector2::UnitX();  ///< unit vector away from the sensor, world frame
   ScalarEstimate along;                  ///< value [m/s] and variance [m^2/s^2]
@@ -90,7 +91,7 @@ struct Measurement {
   std::optional<MeasuredHeading> heading;  ///< used by classes with a heading
   /// Of a lidar's cluster, by two scans: for objects whose velocity is not known yet.
   std::optional<RadialSpeed> radial_speed;
-  int detection = -1;                      ///< index of the detection in its frame
+  int detection = -1;  ///< index of the detection in its frame
 };
 
 /// Multiplies all standard deviations of the measurement by a factor above 0.

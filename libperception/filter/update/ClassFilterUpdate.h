@@ -13,8 +13,8 @@ void updateClassFilter(const Innovation& innovation, ClassFilter& f);
 /// and the moments of the mixture.
 void weighModes(std::vector<double> log_mode, ClassFilter& f);
 
-/// The same as updateClassFilter() for a filter of one Gaussian and a position-only measurement, H = (I 0), without the
-/// products with zeros; `noise` [m^2]: R_model.
+/// The same as updateClassFilter() for a filter of one Gaussian and a position-only measurement, H
+/// = (I 0), without the products with zeros; `noise` [m^2]: R_model.
 void positionUpdate(const Measurement& m, const Matrix2& noise, ClassFilter& f);
 
 }  // namespace perception

@@ -1,7 +1,6 @@
 #include "libperception/filter/update/Update.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <utility>
 
@@ -27,30 +26,17 @@ namespace {
 /// probable again.
 constexpr double kLostProbability = 1 - 1e-5;
 
-/// A decided class is revoked beyond this probability (one true pair in a hundred).
+/// A decided class is revoked beyond this one (one true pair in a hundred).
 constexpr double kSurprisingProbability = 0.99;
 
-/// Detections of a track by a lidar after which its velocity is known well enough (assumed): two
-/// scans of positions tell it, too, and would count twice.
-constexpr int kYoung = 4;
-
-/// Chi-square quantiles by number of axes.
-struct Quantiles {
-  explicit Quantiles(double probability) {
-    for (int n = 1; n <= kMaxAxes; ++n)
-      of[static_cast<std::size_t>(n)] = chi2Quantile(probability, n);
-  }
-  std::array<double, kMaxAxes + 1> of{};
-};
-
 double lostNis(Eigen::Index axes) {
-  static const Quantiles quantiles(kLostProbability);
-  return quantiles.of[static_cast<std::size_t>(axes)];
+  static const Chi2Quantiles<kMaxAxes> quantiles(kLostProbability);
+  return quantiles.of(axes);
 }
 
 double surprisingNis(Eigen::Index axes) {
-  static const Quantiles quantiles(kSurprisingProbability);
-  return quantiles.of[static_cast<std::size_t>(axes)];
+  static const Chi2Quantiles<kMaxAxes> quantiles(kSurprisingProbability);
+  return quantiles.of(axes);
 }
 
 /// Floor and renormalization of the class posterior (method.md 5.6).
@@ -194,14 +180,14 @@ Track hitTrack(Track predicted, const TrackLikelihoods& row, const PairLikelihoo
   const PositionOnlyModel* place = row.predictions.empty() ? scan.model->positionOnly() : nullptr;
   const auto axes_seen = place ? 2 : residual(*scan.model, m, m.z).size();
   const double lost = lostNis(axes_seen);
-  const bool young = track.hits[modalityIndex(scan.modality)] <= kYoung;
+  const bool young = isYoung(track, scan.modality);
   for (ClassId j = 0; j < model.classes.size(); ++j) {
     const ObjectClass& c = model.classes[j];
     const auto i = static_cast<std::size_t>(j);
     ClassFilter& f = track.bank[track.filterOf(i)];
     if (!track.live(j)) {
-      track.log_class[i] +=
-          pair.log_class_evidence[i] + model.params.kinematic_exponent * logSpeed(c, f, model.params);
+      track.log_class[i] += pair.log_class_evidence[i] +
+                            model.params.kinematic_exponent * logSpeed(c, f, model.params);
       continue;
     }
     const bool is_lost = !(pair.nis[i] < lost);

@@ -5,6 +5,13 @@
 
 namespace perception {
 
+/// Whether so few detections of that kind of sensor have not told its velocity well yet. Later the
+/// positions tell it, and scans of positions would count twice.
+inline bool isYoung(const Track& track, Modality modality) {
+  constexpr int kYoung = 4;  // detections (assumed)
+  return track.hits[modalityIndex(modality)] <= kYoung;
+}
+
 /// Kalman update of the velocity of a filter of a class that moves by a measured component of it
 /// (method.md 4.3); modes become likelier as they fit.
 void updateVelocity(const RadialSpeed& seen, ClassFilter& f);

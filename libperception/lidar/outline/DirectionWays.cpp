@@ -7,14 +7,14 @@ namespace perception {
 namespace {
 
 // All assumed.
-constexpr double kWayStep = 0.1;        // [m] of the histogram
-constexpr double kSlowest = 3;          // [m/s]: the tracks of what is slower start well without
-constexpr double kFastest = 45;         // [m/s] of a road user
-constexpr double kLeastAlike = 8;       // that agree
-constexpr double kLeastShare = 0.15;    // of them
-constexpr double kClearly = 1.5;        // times as many as of any other way, or of none
-constexpr int kOwnSteps = 4;            // to each side of the best way, that are no other
-constexpr double kAgrees = 0.15;        // [m]
+constexpr double kWayStep = 0.1;      // [m] of the histogram
+constexpr double kSlowest = 3;        // [m/s]: the tracks of what is slower start well without
+constexpr double kFastest = 45;       // [m/s] of a road user
+constexpr double kLeastAlike = 8;     // that agree
+constexpr double kLeastShare = 0.15;  // of them
+constexpr double kClearly = 1.5;      // times as many as of any other way, or of none
+constexpr int kOwnSteps = 4;          // to each side of the best way, that are no other
+constexpr double kAgrees = 0.15;      // [m]
 
 /// Votes of the cells for ways, in steps.
 class Histogram {
@@ -67,16 +67,16 @@ std::optional<double> DirectionWays::way(double dt) const {
   if (votes < kLeastAlike || votes < kLeastShare * cells || votes < kClearly * other)
     return std::nullopt;
   double sum = 0, weight = 0;
-  for (int s = best - 2; s <= best + 2; ++s) sum += ways.at(s) * ways.wayOf(s), weight += ways.at(s);
+  for (int s = best - 2; s <= best + 2; ++s)
+    sum += ways.at(s) * ways.wayOf(s), weight += ways.at(s);
   return sum / weight;
 }
 
 bool DirectionWays::agrees(std::size_t cell, float range, double way) const {
   const Ranges& before = before_[cell];
-  return std::any_of(before.range.begin(),
-                     before.range.begin() + static_cast<std::ptrdiff_t>(before.n), [&](float r) {
-                       return std::abs(static_cast<double>(range - r) - way) < kAgrees;
-                     });
+  return std::any_of(
+      before.range.begin(), before.range.begin() + static_cast<std::ptrdiff_t>(before.n),
+      [&](float r) { return std::abs(static_cast<double>(range - r) - way) < kAgrees; });
 }
 
 }  // namespace perception

@@ -92,7 +92,8 @@ std::vector<std::uint32_t> behindCloud(const std::vector<Seen>& seen, double slo
   std::vector<std::uint32_t> kept;
   for (std::size_t k = 0; k < seen.size(); ++k) {
     const double a = seen[k].across;
-    if (depthOf(seen[k]) >= *nearest - kBefore && a >= right && a <= left) kept.push_back(points[k]);
+    if (depthOf(seen[k]) >= *nearest - kBefore && a >= right && a <= left)
+      kept.push_back(points[k]);
   }
   return kept;
 }

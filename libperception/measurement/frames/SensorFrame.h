@@ -144,7 +144,7 @@ struct SensorFrame {
   EgoState ego;
   Pose3 T_ego_sensor = Pose3::Identity();
   GroundPlane ground;
-  PhantomCauses causes;  ///< of phantoms at this instant; by default none
+  PhantomCauses causes;                       ///< of phantoms at this instant; by default none
   std::shared_ptr<const EarlierScan> before;  ///< of a lidar; null: none
   std::variant<LidarCloud, ObjectDetections, RadarReturns, CameraImage> data;
 

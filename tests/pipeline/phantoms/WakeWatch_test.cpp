@@ -119,6 +119,22 @@ TEST(WakeWatch, PhantomsWhereAVehicleMustHaveComeAreSeenInItsWake) {
   EXPECT_GT(scan.wakes->density, 0);
 }
 
+/// Whether a car in its second scan leaves a wake, with that deviation [m/s] of its speed.
+bool newbornHasAWake(double sigma) {
+  World world;
+  Track car = *World::carAt(0.1, 20).tracks[0];
+  car.birth = Stamp::fromSeconds(1000);
+  car.hits = {2};
+  car.bank[0].P(2, 2) = car.bank[0].P(3, 3) = sigma * sigma;
+  world.watch.add(0, world.scanAt(0.1, {}), Hypothesis(TrackTable{std::make_shared<Track>(car)}));
+  return world.watch.at(Stamp::fromSeconds(1000.1)) != nullptr;
+}
+
+TEST(WakeWatch, ANewbornVehicleHasAWakeOnceItsSpeedIsKnown) {
+  EXPECT_TRUE(newbornHasAWake(1));
+  EXPECT_FALSE(newbornHasAWake(3));
+}
+
 TEST(WakeWatch, InClearAirThereAreNoWakes) {
   EXPECT_FALSE(World().after(20, {}).wakes);
   EXPECT_FALSE(World().after(20, {{10, 8}}).wakes) << "phantoms beside the way of the car";

@@ -1,0 +1,93 @@
+#include "libperception/lidar/outline/DirectionWays.h"
+
+#include <gtest/gtest.h>
+
+#include <random>
+
+namespace perception {
+namespace {
+
+constexpr double kDt = 0.1;
+constexpr std::size_t kCells = 30;
+
+/// In each cell a surface 20 m away that was `way` [m] nearer before.
+DirectionWays surface(double way, std::size_t cells = kCells) {
+  DirectionWays ways(cells);
+  for (std::size_t c = 0; c < cells; ++c) {
+    const auto range = static_cast<float>(20 + 0.01 * static_cast<double>(c));
+    ways.addNow(c, range);
+    ways.addBefore(c, range - static_cast<float>(way));
+  }
+  return ways;
+}
+
+/// The same with `drops` returns of a cloud before it in each cell, elsewhere in each scan.
+DirectionWays inACloud(double way, int drops) {
+  DirectionWays ways = surface(way);
+  std::mt19937 rng(1);
+  std::uniform_real_distribution<float> before(16, 20);
+  for (std::size_t c = 0; c < kCells; ++c)
+    for (int k = 0; k < drops; ++k) ways.addNow(c, before(rng)), ways.addBefore(c, before(rng));
+  return ways;
+}
+
+TEST(DirectionWays, WhatIsRigidMovesByTheSameWayInAllDirections) {
+  for (const double way : {1.39, -2.5, 4}) {
+    const auto found = surface(way).way(kDt);
+    ASSERT_TRUE(found);
+    EXPECT_NEAR(*found, way, 0.06);
+  }
+}
+
+TEST(DirectionWays, ACloudBeforeItHidesTheWayOfNoSurface) {
+  const auto found = inACloud(1.39, 1).way(kDt);
+  ASSERT_TRUE(found);
+  EXPECT_NEAR(*found, 1.39, 0.06);
+}
+
+TEST(DirectionWays, ACloudHasNoWay) {
+  DirectionWays cloud(kCells);
+  std::mt19937 rng(2);
+  std::uniform_real_distribution<float> range(16, 20);
+  for (std::size_t c = 0; c < kCells; ++c)
+    cloud.addNow(c, range(rng)), cloud.addBefore(c, range(rng));
+  EXPECT_FALSE(cloud.way(kDt));
+}
+
+TEST(DirectionWays, WhatIsSlowOrTooFastForARoadUserHasNone) {
+  EXPECT_FALSE(surface(0).way(kDt));
+  EXPECT_FALSE(surface(0.2).way(kDt));
+  EXPECT_FALSE(surface(5).way(kDt));
+  EXPECT_TRUE(surface(0.2).way(kDt / 2)) << "4 m/s";
+}
+
+TEST(DirectionWays, AFewDirectionsTellNothing) {
+  EXPECT_FALSE(surface(1.4, 7).way(kDt));
+  EXPECT_TRUE(surface(1.4, 9).way(kDt));
+}
+
+// A part that has moved, beside as much that stands: two objects.
+TEST(DirectionWays, WhatDisagreesHasNone) {
+  DirectionWays ways = surface(1.4, 24);
+  for (std::size_t c = 0; c < 24; c += 2) {
+    ways.addNow(c, 18), ways.addNow(c, 18);
+    ways.addBefore(c, 18), ways.addBefore(c, 18);
+  }
+  EXPECT_FALSE(ways.way(kDt));
+}
+
+TEST(DirectionWays, ReturnsAgreeWhoseCellHadOneByThatWayNearer) {
+  const DirectionWays ways = surface(1.4);
+  EXPECT_TRUE(ways.seenBefore(3));
+  EXPECT_TRUE(ways.agrees(3, 20.05F, 1.4));
+  EXPECT_FALSE(ways.agrees(3, 19.5F, 1.4));
+}
+
+TEST(DirectionWays, BeforeCountsOnlyWhereSomethingIsNow) {
+  DirectionWays ways(1);
+  ways.addBefore(0, 20);
+  EXPECT_FALSE(ways.seenBefore(0));
+}
+
+}  // namespace
+}  // namespace perception
