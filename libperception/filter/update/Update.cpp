@@ -202,9 +202,9 @@ Track hitTrack(Track predicted, const TrackLikelihoods& row, const PairLikelihoo
       } else {
         const Kinematics k = kinematicsOf(c, f);
         updateClassFilter(innovationOf(f, k, row.predictions[i], m, *scan.model), f);
-        if (m.radial_speed && young) moveBy(*m.radial_speed, c, birth, model, f);
-        settleSpeeds(c, f);
       }
+      if (m.radial_speed && young) moveBy(*m.radial_speed, c, birth, model, f);
+      settleSpeeds(c, f);
       if (drives) correctWay(expected, f);
     } else if (birth) {
       f = restartFilter(c, *birth, best_kinematics, model);

@@ -13,7 +13,7 @@ inline bool isYoung(const Track& track, Modality modality) {
 }
 
 /// Kalman update of the velocity of a filter of a class that moves by a measured component of it
-/// (method.md 4.3); modes become likelier as they fit.
+/// (method.md 4.3, 8.16); modes become likelier as they fit.
 void updateVelocity(const RadialSpeed& seen, ClassFilter& f);
 
 /// log p(radial speed | class, its filter before) [log s/m]: with a small probability it is that of

@@ -19,7 +19,7 @@ struct MovingCluster {
 };
 
 /// How fast clusters move along the line of sight, by the ranges that two scans of one lidar show
-/// in the same directions (method.md 8.11). Of what is rigid all have changed by the same way; of
+/// in the same directions (method.md 8.16). Of what is rigid all have changed by the same way; of
 /// spray, flakes and leaves they have not.
 class RadialMotion {
  public:

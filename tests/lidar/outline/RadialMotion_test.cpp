@@ -11,8 +11,8 @@ namespace {
 
 using test::SolidScene;
 
-constexpr double kDt = 0.1;
-const Stamp kNow = Stamp::fromSeconds(1000);
+constexpr double kScanTime = 0.1;
+const Stamp kMovedAt = Stamp::fromSeconds(1000);
 
 /// A box 1.8 m wide whose middle is there in the ego frame.
 SolidScene boxAt(double x, double y, double yaw) {
@@ -26,18 +26,18 @@ struct TwoScans {
   double own = 14;  ///< [m/s]
   double world_yaw = 0;
   SolidScene before = boxAt(17, 0, 0), now = boxAt(17, 0, 0);  ///< as seen from the vehicle
-  double time = kDt;
+  double time = kScanTime;
   int drops = 0;  ///< returns of a cloud up to 2.5 m before 14.7 m in each scan
 
   EgoState egoAt(double t) const {
     EgoState ego;
-    ego.stamp = kNow + t;
+    ego.stamp = kMovedAt + t;
     ego.velocity = own * Vector2(std::cos(world_yaw), std::sin(world_yaw));
     ego.T_world_ego = makePose(0, 0, 0, world_yaw) * makePose(own * t, 0, 0, 0);
     return ego;
   }
   SensorFrame frameOf(const SolidScene& scene, std::uint64_t seed) const {
-    SensorFrame frame = test::castScan(scene, test::narrowLidar(), kNow, seed);
+    SensorFrame frame = test::castScan(scene, test::narrowLidar(), kMovedAt, seed);
     auto& cloud = std::get<LidarCloud>(frame.data);
     std::mt19937_64 rng(seed);
     std::uniform_real_distribution<float> x(12.2F, 14.6F), y(-1.2F, 1.2F), z(-1.3F, -0.3F);
@@ -52,7 +52,7 @@ struct TwoScans {
   std::optional<MovingCluster> moved(std::vector<Vector2>* behind_cloud = nullptr) const {
     const LidarFrontEnd lidar = test::plainFrontEnd();
     EarlierScan earlier;
-    earlier.stamp = kNow + -time;
+    earlier.stamp = kMovedAt + -time;
     earlier.T_world_ego = egoAt(-time).T_world_ego;
     earlier.returns = lidar.extract(frameOf(before, 1)).returns;
     const LidarDetections found = lidar.detect(frameOf(now, 2));
@@ -60,7 +60,7 @@ struct TwoScans {
     const auto points = test::obstaclesWhere(
         found, [&](double x, double y) { return (Vector2(x, y) - center).norm() < 5; });
     const EgoState ego = egoAt(0);
-    auto moving = RadialMotion(earlier, found, ego, kNow).of(points);
+    auto moving = RadialMotion(earlier, found, ego, kMovedAt).of(points);
     if (behind_cloud != nullptr && moving) {
       for (const std::uint32_t k : moving->behind_cloud)
         behind_cloud->emplace_back(static_cast<double>(found.x[k]),
@@ -131,7 +131,7 @@ TEST(RadialMotion, ACloudBeforeARearHidesNeitherItsSpeedNorItsPlace) {
   EXPECT_NEAR(moving->speed.along.mean, 14, 0.5);
   ASSERT_GT(kept.size(), 100u);
   for (const Vector2& p : kept) {
-    EXPECT_GT(p.x(), 14.4);
+    EXPECT_GT(p.x(), 14.2) << "drops hang up to 12.2";
     EXPECT_LT(std::abs(p.y()), 1.05) << "the rear is 0.9 m to each side";
   }
 }
