@@ -239,10 +239,9 @@ void LidarFrontEnd::fill(const SensorFrame& frame, MeasurementScan& scan) const 
   std::vector<std::optional<Measurement>> judged(found.judged.size());
   parallelFor(judged.size(), [&](std::size_t k) {
     const JudgedCluster& cluster = found.judged[k];
-    Cluster outline;
-    outline.points = cluster.points;
     const std::optional<MovingCluster> moving = motion ? motion->of(cluster.points) : std::nullopt;
-    if (moving && !moving->behind_cloud.empty()) outline.points = moving->behind_cloud;
+    Cluster outline;
+    outline.points = moving && moving->behindACloud() ? moving->behind_cloud : cluster.points;
     describeCluster(found.x, found.y, found.above, outline);
     if (!reached(outline.hull)) return;
     Measurement& m = judged[k].emplace(measurementOf(context, cluster, std::move(outline)));

@@ -22,14 +22,17 @@ class NotingFrontEnd final : public FrontEnd {
   explicit NotingFrontEnd(bool occludes) : occludes_(occludes) {}
   mutable std::vector<GroundPlane> grounds;
   mutable std::size_t trusts = 0;  ///< returns with a trust
+  mutable std::vector<std::shared_ptr<const EarlierScan>> before;
 
  protected:
   Modality modality() const override { return Modality::kLidar; }
   std::shared_ptr<const MeasurementModel> model() const override { return nullptr; }
   void fill(const SensorFrame& frame, MeasurementScan& scan) const override {
     grounds.push_back(frame.ground);
+    before.push_back(frame.before);
     if (const auto* cloud = std::get_if<LidarCloud>(&frame.data)) trusts += cloud->trust.size();
     scan.measurements.emplace_back();
+    if (occludes_) scan.returns = std::make_shared<const PlacedReturns>();
     if (occludes_) scan.occlusion = std::make_shared<const OcclusionMap>(Vector2::Zero(), 4);
   }
 
@@ -108,6 +111,21 @@ TEST(ScanMaker, BeforeAnyLidarTheGroundIsFlatAndNotMeasured) {
   const GroundPlane ground = maker.groundAfter(kCamera, imageAt(0));
   EXPECT_FALSE(ground.measured);
   EXPECT_EQ(ground.heightAt(10, 10), 0);
+}
+
+TEST(ScanMaker, EachScanOfALidarKnowsTheOneBeforeItUntilTheTracksStartAnew) {
+  const Maker maker;
+  maker.measure(kLidar, roadAt(0, 0));
+  maker.measure(kCamera, imageAt(0.05));
+  maker.measure(kLidar, roadAt(0.1, 0));
+  maker.maker->restart();
+  maker.measure(kLidar, roadAt(0.2, 0));
+  ASSERT_EQ(maker.lidar->before.size(), 3u);
+  EXPECT_FALSE(maker.lidar->before[0]);
+  ASSERT_TRUE(maker.lidar->before[1]);
+  EXPECT_EQ(maker.lidar->before[1]->stamp, kStart);
+  EXPECT_FALSE(maker.lidar->before[2]);
+  EXPECT_FALSE(maker.camera->before[0]);
 }
 
 TEST(ScanMaker, TheGroundOfALidarIsThatOfEverySensor) {

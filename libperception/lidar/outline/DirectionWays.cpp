@@ -9,10 +9,9 @@ namespace {
 // All assumed.
 constexpr double kWayStep = 0.1;      // [m] of the histogram
 constexpr double kSlowest = 3;        // [m/s]: the tracks of what is slower start well without
-constexpr double kFastest = 45;       // [m/s] of a road user
 constexpr double kLeastAlike = 8;     // that agree
 constexpr double kLeastShare = 0.15;  // of them
-constexpr double kClearly = 1.5;      // times as many as of any other way, or of none
+constexpr double kClearly = 2;        // times as many as of any other way, or of none
 constexpr int kOwnSteps = 4;          // to each side of the best way, that are no other
 constexpr double kAgrees = 0.15;      // [m]
 
@@ -45,6 +44,7 @@ std::optional<double> DirectionWays::way(double dt) const {
   Histogram ways(kFastest * dt);
   double cells = 0;
   for (std::size_t c = 0; c < now_.size(); ++c) {
+    if (before_[c].n == 0) continue;
     std::array<int, kMostInCell * kMostInCell> steps{};
     std::size_t n = 0;
     for (std::size_t i = 0; i < now_[c].n; ++i) {

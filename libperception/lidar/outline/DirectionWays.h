@@ -11,6 +11,7 @@ namespace perception {
 class DirectionWays {
  public:
   static constexpr std::size_t kMostInCell = 6;  ///< returns of each scan
+  static constexpr double kFastest = 45;         ///< [m/s] of a road user (assumed)
 
   explicit DirectionWays(std::size_t cells) : now_(cells), before_(cells) {}
 

@@ -18,7 +18,7 @@ constexpr std::size_t kFewestMoving = 20;    // returns of a cluster
 constexpr double kMostTime = 0.25;           // [s] between two scans
 // Cells of direction, so small that a surface is flat in them.
 constexpr double kCellWidth = 0.15, kCellHeight = 0.2;  // [m]
-constexpr int kWayRows = 16, kWayColumns = 64;
+constexpr int kWayRows = 16, kMostColumns = 128;
 constexpr double kWaySigma = 0.1;  // [m] of a way, with the errors of the poses
 // Of the time between two looks, which is not quite that between the stamps.
 constexpr double kTimeError = 0.1;
@@ -100,7 +100,7 @@ std::vector<std::uint32_t> behindCloud(const std::vector<Seen>& seen, double slo
 
 }  // namespace
 
-/// Cells of direction about the middle of a cluster.
+/// Cells of direction about the middle of a cluster, as many as it covers.
 class RadialMotion::Cells {
  public:
   explicit Cells(const std::vector<Return>& returns) {
@@ -109,31 +109,39 @@ class RadialMotion::Cells {
     for (const Return& r : returns) {
       sum += Vector2(static_cast<double>(r.x), static_cast<double>(r.y));
       range += static_cast<double>(r.range);
+      nearest = std::min(nearest, r.range), farthest = std::max(farthest, r.range);
     }
-    ahead_ = sum.normalized(), left_ = {-ahead_.y(), ahead_.x()};
+    ahead = sum.normalized(), left = {-ahead.y(), ahead.x()};
+    for (const Return& r : returns)
+      rightmost = std::min(rightmost, sine(r)), leftmost = std::max(leftmost, sine(r));
     per_sine_ = range / static_cast<double>(returns.size()) / kCellWidth;
+    columns_ = static_cast<int>((leftmost - rightmost) * per_sine_) + 1;
   }
 
-  static constexpr std::size_t kNumber = static_cast<std::size_t>(kWayRows * kWayColumns);
-  const Vector2& ahead() const { return ahead_; }
-  const Vector2& left() const { return left_; }
+  bool tooWide() const { return columns_ > kMostColumns; }
+  std::size_t number() const { return static_cast<std::size_t>(columns_ * kWayRows); }
   /// [m] to the left of the middle
   double across(const Return& r) const {
-    return left_.x() * static_cast<double>(r.x) + left_.y() * static_cast<double>(r.y);
+    return left.x() * static_cast<double>(r.x) + left.y() * static_cast<double>(r.y);
   }
-  double sine(const Return& r) const { return across(r) / static_cast<double>(r.range); }
   std::optional<std::size_t> of(const Return& r) const {
-    if (ahead_.x() * static_cast<double>(r.x) + ahead_.y() * static_cast<double>(r.y) <= 0)
+    if (ahead.x() * static_cast<double>(r.x) + ahead.y() * static_cast<double>(r.y) <= 0)
       return std::nullopt;
-    const auto column = static_cast<int>(std::floor(sine(r) * per_sine_)) + kWayColumns / 2;
+    const auto column = static_cast<int>(std::floor((sine(r) - rightmost) * per_sine_));
     const auto row = static_cast<int>(static_cast<double>(r.height) / kCellHeight);
-    if (column < 0 || column >= kWayColumns || row < 0 || row >= kWayRows) return std::nullopt;
-    return static_cast<std::size_t>(row * kWayColumns + column);
+    if (column < 0 || column >= columns_ || row < 0 || row >= kWayRows) return std::nullopt;
+    return static_cast<std::size_t>(column * kWayRows + row);
   }
 
+  Vector2 ahead, left;
+  double rightmost = 1, leftmost = -1;  ///< sines of the angles to the middle
+  float nearest = std::numeric_limits<float>::infinity(), farthest = 0;  ///< [m]
+
  private:
-  Vector2 ahead_, left_;
+  double sine(const Return& r) const { return across(r) / static_cast<double>(r.range); }
+
   double per_sine_ = 0;  ///< columns
+  int columns_ = 0;
 };
 
 RadialMotion::RadialMotion(const EarlierScan& before, const LidarDetections& now,
@@ -152,7 +160,7 @@ RadialMotion::RadialMotion(const EarlierScan& before, const LidarDetections& now
   for (std::size_t i = 0; i < r.size(); ++i) {
     if (r.height[i] < lowest || r.height[i] > highest) continue;
     const Eigen::Vector3f p = T * Eigen::Vector3f(r.x[i], r.y[i], r.z[i]) - sensor;
-    const float range = std::hypot(p.x(), p.y());
+    const float range = std::sqrt(p.x() * p.x() + p.y() * p.y());
     if (range > kFarthestMoving) continue;
     placed.push_back({p.x(), p.y(), range, r.height[i]});
     bins.push_back(static_cast<std::size_t>(azimuthBinOf(p.x(), p.y())));
@@ -172,7 +180,7 @@ std::vector<RadialMotion::Return> RadialMotion::returnsOf(
   returns.reserve(points.size());
   for (const std::uint32_t k : points) {
     const float x = now_.x[k] - sx, y = now_.y[k] - sy;
-    returns.push_back({x, y, std::hypot(x, y), now_.above[k]});
+    returns.push_back({x, y, std::sqrt(x * x + y * y), now_.above[k]});
   }
   return returns;
 }
@@ -181,26 +189,29 @@ std::optional<MovingCluster> RadialMotion::of(const std::vector<std::uint32_t>& 
   if (points.size() < kFewestMoving || before_.empty()) return std::nullopt;
   const std::vector<Return> returns = returnsOf(points);
   const Cells cells(returns);
-  DirectionWays ways(Cells::kNumber);
+  if (cells.tooWide()) return std::nullopt;
+  DirectionWays ways(cells.number());
   std::vector<std::optional<std::size_t>> cell_of;
-  double rightmost = 1, leftmost = -1;  // sines
+  cell_of.reserve(returns.size());
   for (const Return& r : returns) {
     cell_of.push_back(cells.of(r));
-    if (!cell_of.back()) continue;
-    ways.addNow(*cell_of.back(), r.range);
-    rightmost = std::min(rightmost, cells.sine(r)), leftmost = std::max(leftmost, cells.sine(r));
+    if (cell_of.back()) ways.addNow(*cell_of.back(), r.range);
   }
-  if (rightmost > leftmost) return std::nullopt;
-  const double azimuth = std::atan2(cells.ahead().y(), cells.ahead().x());
+  const double azimuth = std::atan2(cells.ahead.y(), cells.ahead.x());
   constexpr double kPerBin = kTwoPi / static_cast<double>(kAzimuthBins);
   const auto binAt = [&](double sine) {
     return static_cast<std::int64_t>(std::floor((azimuth + std::asin(sine)) / kPerBin));
   };
-  const std::int64_t last = binAt(leftmost) + 1;
-  for (std::int64_t b = binAt(rightmost) - 1; b <= last; ++b) {
+  const auto farthest_way = static_cast<float>(DirectionWays::kFastest * dt_);
+  const float least = cells.nearest - farthest_way, most = cells.farthest + farthest_way;
+  const std::int64_t last = binAt(cells.leftmost) + 1;
+  for (std::int64_t b = binAt(cells.rightmost) - 1; b <= last; ++b) {
     const auto bin = static_cast<std::size_t>((b % kAzimuthBins + kAzimuthBins) % kAzimuthBins);
-    for (std::uint32_t k = at_[bin]; k < at_[bin + 1]; ++k)
-      if (const auto cell = cells.of(before_[k])) ways.addBefore(*cell, before_[k].range);
+    for (std::uint32_t k = at_[bin]; k < at_[bin + 1]; ++k) {
+      const Return& r = before_[k];
+      if (r.range < least || r.range > most) continue;
+      if (const auto cell = cells.of(r)) ways.addBefore(*cell, r.range);
+    }
   }
   const std::optional<double> way = ways.way(dt_);
   if (!way) return std::nullopt;
@@ -216,7 +227,7 @@ std::optional<MovingCluster> RadialMotion::of(const std::vector<std::uint32_t>& 
   if (std::abs(slope) > kSteepest) return std::nullopt;
   MovingCluster moving;
   moving.behind_cloud = behindCloud(seen, slope, points);
-  const Vector2 normal = cells.ahead() - slope * cells.left();
+  const Vector2 normal = cells.ahead - slope * cells.left;
   moving.speed.direction =
       (ego_.T_world_ego.linear() * Vector3(normal.x(), normal.y(), 0)).head<2>().normalized();
   const double along = *way / dt_ / std::hypot(1, slope);

@@ -16,6 +16,7 @@ struct MovingCluster {
   /// Indices into the obstacles: its surface and what lies behind it, where a cloud that does not
   /// move alike hangs before it. Empty: none does.
   std::vector<std::uint32_t> behind_cloud;
+  bool behindACloud() const { return !behind_cloud.empty(); }
 };
 
 /// How fast clusters move along the line of sight, by the ranges that two scans of one lidar show
