@@ -9,7 +9,7 @@ namespace {
 // All assumed.
 constexpr double kWayStep = 0.1;      // [m] of the histogram
 constexpr double kSlowest = 3;        // [m/s]: the tracks of what is slower start well without
-constexpr double kLeastAlike = 8;     // that agree
+constexpr double kLeastAlike = 10;    // that agree
 constexpr double kLeastShare = 0.15;  // of them
 constexpr double kClearly = 2;        // times as many as of any other way, or of none
 constexpr int kOwnSteps = 4;          // to each side of the best way, that are no other
