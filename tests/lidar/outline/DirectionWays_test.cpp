@@ -8,7 +8,7 @@ namespace perception {
 namespace {
 
 constexpr double kDt = 0.1;
-constexpr std::size_t kCells = 30;
+constexpr std::size_t kCells = 50;
 
 /// In each cell a surface 20 m away that was `way` [m] nearer before.
 DirectionWays surface(double way, std::size_t cells = kCells) {
@@ -62,8 +62,8 @@ TEST(DirectionWays, WhatIsSlowOrTooFastForARoadUserHasNone) {
 }
 
 TEST(DirectionWays, AFewDirectionsTellNothing) {
-  EXPECT_FALSE(surface(1.4, 7).way(kDt));
-  EXPECT_TRUE(surface(1.4, 9).way(kDt));
+  EXPECT_FALSE(surface(1.4, 9).way(kDt));
+  EXPECT_TRUE(surface(1.4, 11).way(kDt));
 }
 
 TEST(DirectionWays, TwoObjectsThatMoveByTheirOwnWaysHaveNone) {
