@@ -157,6 +157,7 @@ RadialMotion::RadialMotion(const EarlierScan& before, const LidarDetections& now
   const Eigen::Vector3f sensor = now.points.sensor.cast<float>();
   std::vector<Return> placed;
   std::vector<std::size_t> bins;
+  placed.reserve(r.size()), bins.reserve(r.size());
   for (std::size_t i = 0; i < r.size(); ++i) {
     if (r.height[i] < lowest || r.height[i] > highest) continue;
     const Eigen::Vector3f p = T * Eigen::Vector3f(r.x[i], r.y[i], r.z[i]) - sensor;

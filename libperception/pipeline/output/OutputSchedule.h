@@ -19,8 +19,8 @@ class OutputSchedule {
   struct Instant {
     EgoState ego;
     std::int64_t frame = -1;
-    PathAhead path;                  ///< ahead, as of this instant
-    std::optional<FreePath> advice;  ///< as of this instant, if the scene is made later
+    PathAhead path;                                 ///< ahead, as of this instant
+    std::optional<FreePath> advice = std::nullopt;  ///< as of this instant, if the scene is later
   };
 
   OutputSchedule(const RunParams& run, const std::vector<PipelineSetup::Sensor>& sensors);
