@@ -44,6 +44,15 @@ inline std::vector<std::uint32_t> obstaclesWhere(
   return members;
 }
 
+/// Calls everything a vehicle.
+inline ClusterClassifier vehiclesAlone() {
+  BoostedTrees trees;
+  trees.base[static_cast<std::size_t>(ClusterKind::kVehicle)] = 8;
+  return {trees, std::array<Calibration, kClusterKinds>{},
+          std::array<double, kClusterKinds>{0.2, 0.2, 0.2, 0.15, 0.05, 0.2}, EvidenceMemory{},
+          Provenance{}};
+}
+
 /// A scan of a scene and its obstacles.
 struct ObstacleScan {
   SensorFrame frame;

@@ -168,8 +168,7 @@ Track hitTrack(Track predicted, const TrackLikelihoods& row, const PairLikelihoo
   track.history = extendHistory(track.history, scan_index, pair.measurement);
   track.existence = model.params.existence_max;
   track.stands = pair.stands, track.goes_along = pair.goes_along, track.missed = 0;
-  track.last_in_view = scan.state.stamp;
-  track.last_hit[modalityIndex(scan.modality)] = scan.state.stamp;
+  track.last_in_view = track.last_hit[modalityIndex(scan.modality)] = scan.state.stamp;
   ++track.hits[modalityIndex(scan.modality)];
   const auto best =
       static_cast<ClassId>(std::min_element(pair.nis.begin(), pair.nis.end()) - pair.nis.begin());
@@ -179,7 +178,6 @@ Track hitTrack(Track predicted, const TrackLikelihoods& row, const PairLikelihoo
   if (m.heading) updateBodyHeading(*m.heading, model.params, track);
   const PositionOnlyModel* place = row.predictions.empty() ? scan.model->positionOnly() : nullptr;
   const auto axes_seen = place ? 2 : residual(*scan.model, m, m.z).size();
-  const double lost = lostNis(axes_seen);
   const bool young = isYoung(track, scan.modality);
   for (ClassId j = 0; j < model.classes.size(); ++j) {
     const ObjectClass& c = model.classes[j];
@@ -190,19 +188,18 @@ Track hitTrack(Track predicted, const TrackLikelihoods& row, const PairLikelihoo
                             model.params.kinematic_exponent * logSpeed(c, f, model.params);
       continue;
     }
-    const bool is_lost = !(pair.nis[i] < lost);
+    const bool is_lost = !(pair.nis[i] < lostNis(axes_seen));
     std::optional<BirthState> birth;
     if (is_lost || c.motion->has_heading) birth = scan.model->birth(m, j, scan.state);
     if (m.radial_speed && young) track.log_class[i] += logRadialSpeed(c, f, *m.radial_speed);
     const Vector2 expected = f.x.head<2>();
     const bool drives = f.oriented && movesSurely(f);
     if (!is_lost) {
-      if (place) {
+      if (place)
         positionUpdate(m, place->placeNoise(j), f);
-      } else {
-        const Kinematics k = kinematicsOf(c, f);
-        updateClassFilter(innovationOf(f, k, row.predictions[i], m, *scan.model), f);
-      }
+      else
+        updateClassFilter(innovationOf(f, kinematicsOf(c, f), row.predictions[i], m, *scan.model),
+                          f);
       if (m.radial_speed && young) moveBy(*m.radial_speed, c, birth, model, f);
       settleSpeeds(c, f);
       if (drives) correctWay(expected, f);

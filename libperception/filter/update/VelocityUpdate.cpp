@@ -60,8 +60,9 @@ void updateVelocity(const RadialSpeed& seen, ClassFilter& f) {
 }
 
 double logRadialSpeed(const ObjectClass& c, const ClassFilter& f, const RadialSpeed& seen) {
-  // All assumed: of something else's, [m/s] that this may have, [m/s] of the leaves of what stands.
-  constexpr double kElse = 0.05, kSpeeds = 90, kLeaves = 0.3;
+  constexpr double kElse = 0.05;   // assumed probability that the motion is of something else
+  constexpr double kSpeeds = 90;   // [m/s] assumed range of the speeds of something else
+  constexpr double kLeaves = 0.3;  // [m/s] assumed deviation of what does not move, as leaves
   const auto density = [&](const Vector4& x, const Matrix4& P) {
     double variance = seen.along.variance, expected = 0;
     if (c.motion->moves) {

@@ -5,8 +5,8 @@
 
 namespace perception {
 
-/// Whether so few detections of that kind of sensor have not told its velocity well yet. Later the
-/// positions tell it, and scans of positions would count twice.
+/// Whether that kind of sensor has detected the object so rarely that its positions do not tell its
+/// velocity well. Later they do, and the same scans would count twice.
 inline bool isYoung(const Track& track, Modality modality) {
   constexpr int kYoung = 4;  // detections (assumed)
   return track.hits[modalityIndex(modality)] <= kYoung;

@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "libperception/core/math/Angle.h"
-#include "libperception/lidar/outline/DirectionWays.h"
+#include "libperception/lidar/outline/RangeFlow.h"
 #include "libperception/simd/FastAtan2.h"
 
 namespace perception {
@@ -191,7 +191,7 @@ std::optional<MovingCluster> RadialMotion::of(const std::vector<std::uint32_t>& 
   const std::vector<Return> returns = returnsOf(points);
   const Cells cells(returns);
   if (cells.tooWide()) return std::nullopt;
-  DirectionWays ways(cells.number());
+  RangeFlow ways(cells.number());
   std::vector<std::optional<std::size_t>> cell_of;
   cell_of.reserve(returns.size());
   for (const Return& r : returns) {
@@ -203,7 +203,7 @@ std::optional<MovingCluster> RadialMotion::of(const std::vector<std::uint32_t>& 
   const auto binAt = [&](double sine) {
     return static_cast<std::int64_t>(std::floor((azimuth + std::asin(sine)) / kPerBin));
   };
-  const auto farthest_way = static_cast<float>(DirectionWays::kFastest * dt_);
+  const auto farthest_way = static_cast<float>(RangeFlow::kFastest * dt_);
   const float least = cells.nearest - farthest_way, most = cells.farthest + farthest_way;
   const std::int64_t last = binAt(cells.leftmost) + 1;
   for (std::int64_t b = binAt(cells.rightmost) - 1; b <= last; ++b) {

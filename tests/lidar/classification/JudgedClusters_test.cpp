@@ -305,22 +305,6 @@ TEST(JudgedClusters, MeasurementsTellClassesByTheirShape) {
   EXPECT_EQ(scan.model->evidenceMemory()->lasting, 0.35);
 }
 
-TEST(JudgedClusters, MeasurementsTellHowClustersHaveMovedSinceTheScanBefore) {
-  const LidarFrontEnd lidar = test::shapedFrontEnd({ObjectShape::kVehicle}, byLength());
-  SensorFrame frame = test::castScan(parkedStreet(), test::narrowLidar());
-  const MeasurementScan alone = lidar.extract(frame);
-  EXPECT_FALSE(nearest(alone, {12, 0})->radial_speed);
-  EarlierScan before;
-  before.stamp = frame.stamp + -0.1;
-  before.T_world_ego = makePose(-1, 0, 0, 0);  // the van was as far away, so it drives 10 m/s
-  before.returns = lidar.extract(frame).returns;
-  frame.before = std::make_shared<const EarlierScan>(before);
-  const MeasurementScan scan = lidar.extract(frame);
-  const Measurement* van = nearest(scan, {12, 0});
-  ASSERT_TRUE(van->radial_speed);
-  EXPECT_NEAR(van->radial_speed->along.mean, 10, 0.5);
-}
-
 TEST(JudgedClusters, WithAClassifierNoneIsBySpacingsOrPeaks) {
   const LidarFrontEnd lidar = test::shapedFrontEnd({ObjectShape::kThing}, byLength());
   const LidarDetections found = lidar.detect(test::castScan(parkedStreet(), test::narrowLidar()));

@@ -88,15 +88,6 @@ struct Street {
   bool isOfWall(std::uint32_t obstacle) const { return found.x[obstacle] > 20; }
 };
 
-/// Calls everything a vehicle.
-ClusterClassifier vehiclesAlone() {
-  BoostedTrees trees;
-  trees.base[static_cast<std::size_t>(ClusterKind::kVehicle)] = 8;
-  return {trees, std::array<Calibration, kClusterKinds>{},
-          std::array<double, kClusterKinds>{0.2, 0.2, 0.2, 0.15, 0.05, 0.2}, EvidenceMemory{},
-          Provenance{}};
-}
-
 TEST(DescribedClusters, WholesBeyondReachAreNotDescribed) {
   const Street street;
   const auto all = describedClusters(street.found, street.cloud(), street.cells),
@@ -115,7 +106,8 @@ TEST(DescribedClusters, WholesBeyondReachAreNotDescribed) {
 TEST(DescribedClusters, BeyondReachTheyAreThings) {
   const Street street;
   const auto judged = [&](double reach) {
-    return judgedClusters(street.found, street.cloud(), street.cells, vehiclesAlone(), {}, reach);
+    return judgedClusters(street.found, street.cloud(), street.cells, test::vehiclesAlone(), {},
+                          reach);
   };
   const Judgement far = judged(60), near = judged(18);
   EXPECT_EQ(far.clusters.size(), 3u);

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <memory>
 #include <random>
 
 #include "tests/support/ClusterScenes.h"
@@ -141,6 +142,23 @@ TEST(RadialMotion, ScansFarApartInTimeTellNothing) {
   scans.time = 0.3;
   scans.before = boxAt(17, 0, 0);
   EXPECT_FALSE(scans.moved());
+}
+
+TEST(RadialMotion, TheFrontEndMeasuresItOfItsClustersWhereItKnowsTheScanBefore) {
+  const LidarFrontEnd lidar = test::shapedFrontEnd(
+      {ObjectShape::kVehicle}, std::make_shared<ClusterClassifier>(test::vehiclesAlone()));
+  const TwoScans scans;
+  SensorFrame frame = scans.frameOf(scans.now, 2);
+  frame.ego = scans.egoAt(0);
+  const MeasurementScan alone = lidar.extract(frame);
+  ASSERT_EQ(alone.measurements.size(), 1u);
+  EXPECT_FALSE(alone.measurements[0].radial_speed);
+  frame.before = std::make_shared<const EarlierScan>(
+      EarlierScan{kMovedAt + -kScanTime, scans.egoAt(-kScanTime).T_world_ego, alone.returns});
+  const MeasurementScan scan = lidar.extract(frame);
+  ASSERT_EQ(scan.measurements.size(), 1u);
+  ASSERT_TRUE(scan.measurements[0].radial_speed);
+  EXPECT_NEAR(scan.measurements[0].radial_speed->along.mean, 14, 0.5);
 }
 
 }  // namespace

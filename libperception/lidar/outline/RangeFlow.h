@@ -8,12 +8,12 @@ namespace perception {
 
 /// The ranges that two scans show in cells of direction, and by which way most of the cells say
 /// that what they show has moved.
-class DirectionWays {
+class RangeFlow {
  public:
   static constexpr std::size_t kMostInCell = 6;  ///< returns of each scan
   static constexpr double kFastest = 45;         ///< [m/s] of a road user (assumed)
 
-  explicit DirectionWays(std::size_t cells) : now_(cells), before_(cells) {}
+  explicit RangeFlow(std::size_t cells) : now_(cells), before_(cells) {}
 
   void addNow(std::size_t cell, float range) { now_[cell].add(range); }
   /// Only where returns of now are.

@@ -1,4 +1,4 @@
-#include "libperception/lidar/outline/DirectionWays.h"
+#include "libperception/lidar/outline/RangeFlow.h"
 
 #include <algorithm>
 #include <cmath>
@@ -6,14 +6,14 @@
 namespace perception {
 namespace {
 
-// All assumed.
-constexpr double kWayStep = 0.1;      // [m] of the histogram
-constexpr double kSlowest = 3;        // [m/s]: the tracks of what is slower start well without
-constexpr double kLeastAlike = 10;    // that agree
-constexpr double kLeastShare = 0.15;  // of them
-constexpr double kClearly = 2;        // times as many as of any other way, or of none
-constexpr int kOwnSteps = 4;          // to each side of the best way, that are no other
-constexpr double kAgrees = 0.15;      // [m]
+// All values are assumed, but kLeastVotes and kClearly, which were chosen on recorded snow.
+constexpr double kWayStep = 0.1;      // [m] step of the histogram of ways
+constexpr double kSlowest = 3;        // [m/s] below which nothing is said
+constexpr double kLeastVotes = 10;    // cells that have to agree
+constexpr double kLeastShare = 0.15;  // share of the cells that has to agree
+constexpr double kClearly = 2;        // least ratio of the votes to those of any other way
+constexpr int kOwnSteps = 4;          // steps to each side that belong to the best way
+constexpr double kAgrees = 0.15;      // [m] by which a range may miss the way
 
 /// Votes of the cells for ways, in steps.
 class Histogram {
@@ -40,7 +40,7 @@ class Histogram {
 
 }  // namespace
 
-std::optional<double> DirectionWays::way(double dt) const {
+std::optional<double> RangeFlow::way(double dt) const {
   Histogram ways(kFastest * dt);
   double cells = 0;
   for (std::size_t c = 0; c < now_.size(); ++c) {
@@ -64,7 +64,7 @@ std::optional<double> DirectionWays::way(double dt) const {
   for (int s = 0; s <= ways.last(); ++s)
     if (std::abs(s - best) > kOwnSteps || ways.isNone(s)) other = std::max(other, ways.about(s));
   const double votes = ways.about(best);
-  if (votes < kLeastAlike || votes < kLeastShare * cells || votes < kClearly * other)
+  if (votes < kLeastVotes || votes < kLeastShare * cells || votes < kClearly * other)
     return std::nullopt;
   double sum = 0, weight = 0;
   for (int s = best - 2; s <= best + 2; ++s)
@@ -72,7 +72,7 @@ std::optional<double> DirectionWays::way(double dt) const {
   return sum / weight;
 }
 
-bool DirectionWays::agrees(std::size_t cell, float range, double way) const {
+bool RangeFlow::agrees(std::size_t cell, float range, double way) const {
   const Ranges& before = before_[cell];
   return std::any_of(
       before.range.begin(), before.range.begin() + static_cast<std::ptrdiff_t>(before.n),
